@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -17,31 +18,15 @@ namespace {
 constexpr double coarsest_default_cell = 2.5;
 constexpr double most_cells = 1e8;
 
-/// What a scene has that the model lacks; the reasons stand beside its keys.
-struct Refusal {
-    const ParsedScene& parsed;
-    const std::string& otherwise;
-
-    [[nodiscard]] Status operator()(const std::string& place, std::string_view key, const std::string& which) const {
-        return Error{fmt::format("{}: the depth-averaged model {}{}; remove it, or {}", parsed.at(place),
-                                 depth_averaged_key(key)->why, which, otherwise)};
-    }
-};
-
-Status check_structures(const Refusal& refuse, const Scene& scene) {
-    for (const terrain::Building& building : scene.buildings) {
-        const std::string place = building.barrier ? "barrier" : "buildings.file";
-        const std::string which = fmt::format(", and \"{}\" ", building.name);
-        if (building.barrier && building.barrier->passing_share) {
-            return refuse(place, "barrier.passing_share", which + "is one");
-        }
-        if (building.barrier && building.barrier->clearance) {
-            return refuse(place, "barrier.clearance_m", which + "has a clearance");
-        }
-        if (building.resistance != terrain::Resistance{}) {
-            return refuse(place, building.barrier ? "barrier.resistance_Pa" : "buildings.resistance_Pa",
-                          which + "has a resistance");
-        }
+std::optional<Lacking> lacking_structure(const terrain::Building& building) {
+    const auto lacking = [&](std::string_view key, std::string_view which) {
+        return Lacking{building.barrier ? "barrier" : "buildings.file",
+                       fmt::format("{}, and \"{}\" {}", depth_averaged_key(key)->why, building.name, which)};
+    };
+    if (building.barrier && building.barrier->passing_share) return lacking("barrier.passing_share", "is one");
+    if (building.barrier && building.barrier->clearance) return lacking("barrier.clearance_m", "has a clearance");
+    if (building.resistance != terrain::Resistance{}) {
+        return lacking(building.barrier ? "barrier.resistance_Pa" : "buildings.resistance_Pa", "has a resistance");
     }
     return {};
 }
@@ -53,13 +38,23 @@ double grid_cell(const Scene& scene) {
     return scene.spec.solver.grid_cell.value_or(cell / std::ceil(cell / coarsest_default_cell - 1e-9));
 }
 
-Status refuse_for_depth_averaged(const ParsedScene& parsed, const Scene& scene, const std::string& otherwise) {
-    const Refusal refuse{parsed, otherwise};
-    for (std::size_t k = 0; k < scene.spec.releases.size(); ++k) {
-        if (!scene.spec.releases[k].pore_pressure_ratio) continue;
-        return refuse(fmt::format("release[{}].pore_pressure_ratio", k), "release.pore_pressure_ratio", "");
+std::optional<Lacking> depth_averaged_lacks(const Scene& scene) {
+    for (std::size_t k = 0; k < scene.releases.size(); ++k) {
+        if (!scene.releases[k].spec.pore_pressure_ratio) continue;
+        return Lacking{fmt::format("release[{}].pore_pressure_ratio", k),
+                       std::string(depth_averaged_key("release.pore_pressure_ratio")->why)};
     }
-    TALUS_TRY(check_structures(refuse, scene));
+    for (const terrain::Building& building : scene.buildings) {
+        if (auto lacking = lacking_structure(building)) return lacking;
+    }
+    return {};
+}
+
+Status refuse_for_depth_averaged(const ParsedScene& parsed, const Scene& scene, const std::string& otherwise) {
+    if (const auto lacking = depth_averaged_lacks(scene)) {
+        return Error{fmt::format("{}: the depth-averaged model {}; remove it, or {}", parsed.at(lacking->key),
+                                 lacking->why, otherwise)};
+    }
     const Extent e = scene.terrain.elevation().geometry.extent();
     const double cell = grid_cell(scene), cells = e.width() * e.height() / (cell * cell);
     if (cells > most_cells) {
@@ -72,11 +67,7 @@ Status refuse_for_depth_averaged(const ParsedScene& parsed, const Scene& scene, 
     return {};
 }
 
-Status check_depth_averaged(const ParsedScene& parsed, Scene& scene) {
-    TALUS_TRY(refuse_for_depth_averaged(parsed, scene, "use solver.model = \"particles\""));
-    const params::SceneSpec& spec = scene.spec;
-    const double cell = grid_cell(scene);
-    TALUS_TRY(check_series(parsed, scene, cell, 0));
+std::vector<std::string> depth_averaged_notes(const Scene& scene) {
     std::vector<std::string> unused;
     const auto dense = [](const terrain::Inflow& inflow) { return inflow.has_density(); };
     if (std::any_of(scene.inflows.begin(), scene.inflows.end(), dense)) {
@@ -86,17 +77,26 @@ Status check_depth_averaged(const ParsedScene& parsed, Scene& scene) {
         const std::string key(entry.key);
         if (entry.use == KeyUse::noted && scene.given_keys.contains(key)) unused.push_back(key);
     }
-    if (spec.material.kinematic_viscosity && !spec.material.viscosity_on_ground) {
+    const params::MaterialSpec& material = scene.spec.material;
+    if (material.kinematic_viscosity && !material.viscosity_on_ground) {
         unused.emplace_back("material.kinematic_viscosity_m2ps without viscosity_on_ground");
     }
+    std::vector<std::string> notes;
     if (!unused.empty()) {
-        scene.notes.push_back(fmt::format("the depth-averaged model has no use for {}", fmt::join(unused, ", ")));
+        notes.push_back(fmt::format("the depth-averaged model has no use for {}", fmt::join(unused, ", ")));
     }
-    scene.notes.push_back(fmt::format(
+    notes.push_back(fmt::format(
         "depth-averaged model on cells of {:.4g} m: one velocity over the depth; buildings and barriers are "
         "whole cells, forces on them are weight and momentum flux of the flow beside them; no friction inside, no "
         "falls, no splash",
-        cell));
+        grid_cell(scene)));
+    return notes;
+}
+
+Status check_depth_averaged(const ParsedScene& parsed, Scene& scene) {
+    TALUS_TRY(refuse_for_depth_averaged(parsed, scene, "use solver.model = \"particles\""));
+    TALUS_TRY(check_series(parsed, scene, grid_cell(scene), 0));
+    for (std::string& note : depth_averaged_notes(scene)) scene.notes.push_back(std::move(note));
     return {};
 }
 

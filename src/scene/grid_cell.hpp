@@ -1,6 +1,8 @@
 #pragma once
 
+#include <optional>
 #include <string>
+#include <vector>
 
 #include "core/result.hpp"
 #include "scene/parse.hpp"
@@ -11,6 +13,17 @@ namespace talus::scene {
 
 /// The cell of its grid, m: a whole fraction of the terrain's where the scene does not give it.
 [[nodiscard]] double grid_cell(const Scene& scene);
+
+/// Something of a scene that this model does not have.
+struct Lacking {
+    std::string key;  ///< at fault: "barrier"
+    std::string why;  ///< ends a sentence that begins with the model: "has no nets, and "dam" is one"
+};
+/// The first that a loaded scene needs; nothing: the model can run it.
+[[nodiscard]] std::optional<Lacking> depth_averaged_lacks(const Scene& scene);
+
+/// What it leaves out of a loaded scene that it can run, in sentences without capital and full stop.
+[[nodiscard]] std::vector<std::string> depth_averaged_notes(const Scene& scene);
 
 /// Refuses what this model does not have, and too many cells. `otherwise`: what can be done but to remove it, "use
 /// solver.model = "particles"".

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "serve/calibrations.hpp"
+#include "serve/depth_averaged.hpp"
 #include "serve/ensembles.hpp"
 #include "serve/exports.hpp"
 #include "serve/router.hpp"
@@ -29,6 +30,8 @@ void add_scenario_routes(Router& router, Session& session, Exports& exports);
 void add_ensemble_routes(Router& router, const Ensembles& ensembles);
 void add_calibration_routes(Router& router, Session& session, Calibrations& calibrations);
 void add_alert_routes(Router& router, Alerts& alerts);
+/// Of the depth-averaged model beside the live runs.
+void add_depth_averaged_routes(Router& router, Session& session, DepthAveraged& model);
 
 /// Calls `act` with the name of the requester if it may make changes now, otherwise answers why not.
 void change(Session& session, const Request& request, const Respond& respond,

@@ -13,7 +13,8 @@ OpenSession::OpenSession(Thread thread, std::shared_ptr<const scene::Scene> scen
       exports(session, options.export_folder),
       calibrations(scene, options.calibration,
                    [this](nlohmann::json status) { session.calibration(std::move(status)); }),
-      alerts(session, std::move(scene), options.alerts) {}
+      alerts(session, std::move(scene), options.alerts),
+      depth_averaged(session) {}
 
 Result<OpenSessionPtr> OpenSession::open(Thread thread, const std::shared_ptr<const scene::Scene>& scene,
                                          const ServerOptions& options, std::vector<OpeningScenario> scenarios) {
@@ -23,6 +24,7 @@ Result<OpenSessionPtr> OpenSession::open(Thread thread, const std::shared_ptr<co
     TALUS_TRY(made->session.open(options.scenario, on_failure));
     made->session.calibration(made->calibrations.describe());
     made->router = make_api(made->session, made->exports, made->ensembles, made->calibrations, made->alerts);
+    add_depth_averaged_routes(made->router, made->session, made->depth_averaged);
     TALUS_TRY(made->alerts.open());
     const auto shared = std::make_shared<std::vector<OpeningScenario>>(std::move(scenarios));
     made->session.loop().post([shared, run = options.run](Scenarios& all) {
@@ -36,6 +38,7 @@ void OpenSession::close() {
     // Threads end while everything that they notify still exists.
     calibrations.close();
     alerts.close();
+    depth_averaged.close();
     session.close();
     exports.close();
 }

@@ -6,6 +6,7 @@
 
 #include "serve/alerts.hpp"
 #include "serve/calibrations.hpp"
+#include "serve/depth_averaged.hpp"
 #include "serve/ensembles.hpp"
 #include "serve/exports.hpp"
 #include "serve/router.hpp"
@@ -43,6 +44,7 @@ struct OpenSession {
     Exports exports;
     Calibrations calibrations;
     Alerts alerts;
+    DepthAveraged depth_averaged;
     Router router;
 };
 

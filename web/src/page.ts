@@ -7,6 +7,7 @@ import { frontCharts, timeCharts } from "./charts/series_charts";
 import { alarmsPanel, triggerBanner } from "./panels/alerts";
 import { calibratePanel } from "./panels/calibrate";
 import { ComparePanel } from "./panels/compare";
+import { DepthAveragedPanel } from "./panels/depth_averaged";
 import { exportButtons } from "./panels/exports";
 import { impactColour, impactsPanel, largestPressure } from "./panels/impacts";
 import { help, keys } from "./panels/keys";
@@ -66,9 +67,10 @@ function buildPage(page: HTMLElement, twin: Twin): void {
 
   const probes = new Probes(twin);
   const compare = new ComparePanel(twin, picture);
+  const secondModel = new DepthAveragedPanel(twin);
   const section = sectionPanel(twin, stage);
   const readings = tabs("Readings", [
-    { name: "front", title: "Front", content: frontCharts(twin) },
+    { name: "front", title: "Front", content: frontCharts(twin, secondModel.element) },
     { name: "time", title: "Time", content: timeCharts(twin) },
     { name: "points", title: "Points", content: probes.element },
     { name: "section", title: "Section", content: section.element },
@@ -96,6 +98,7 @@ function buildPage(page: HTMLElement, twin: Twin): void {
     if (line) readings.show("section");
   });
   new Refresher(twin, () => {
+    if (readings.shown() === "front") void secondModel.refresh();
     if (readings.shown() === "points") void probes.refresh();
     if (readings.shown() === "section") section.refresh();
     if (readings.shown() === "compare") void compare.refresh();
