@@ -8,10 +8,18 @@
 namespace talus::observe {
 namespace {
 
-/// Width of the area on which a particle presses, in spacings. The debris that it represents extends as far as its
-/// kernel, about two spacings around: with one spacing the highest patch pressure would be that of a ragged front, and
-/// would rise as the number of particles falls.
+/// Width of the area on which a particle presses, and length of the debris that arrives with it, in spacings. The
+/// debris that it represents extends as far as its kernel, about two spacings around: with one spacing the highest
+/// patch pressure would be that of a ragged front, and would rise as the number of particles falls.
 constexpr double contact_spacings = 2;
+
+/// How long the debris of a particle takes to arrive at a wall, s. A stream of particles is a row of blows, one for
+/// each spacing; the debris that it represents comes without gaps. Debris at rest passes on changes of pressure at the
+/// speed of waves of its depth, of which a spacing is the least.
+double arrival_time(const sim::Model& model, double speed) {
+    const double length = contact_spacings * model.particle_spacing;
+    return length / std::max(speed, std::sqrt(model.gravity * model.particle_spacing));
+}
 
 }  // namespace
 
@@ -98,21 +106,16 @@ void ImpactRecorder::drop_slots(std::size_t building) {
     record.first_slot = no_slot;
 }
 
-void ImpactRecorder::add_contact(const sim::State& state, const sim::BuildingContact& contact) {
+void ImpactRecorder::add_contact(const sim::Model& model, const sim::State& state,
+                                 const sim::BuildingContact& contact) {
     const auto building = static_cast<std::size_t>(contact.building);
     BuildingImpact& impact = impacts_[building];
-    Record& record = records_[building];
-    if (!record.touched) {
-        record.touched = true;
-        record.pressure = 0;
-        touched_.push_back(building);
-    }
-    if (record.first_slot == no_slot) give_slots(building);
-    const double impulse = contact.impulse;
-    sums_.add(record.first_slot, impulse);
-    const std::size_t first = record.first_slot + 1;
+    if (records_[building].first_slot == no_slot) give_slots(building);
+    const double impulse = contact.impulse, duration = arrival_time(model, contact.speed);
+    const std::size_t whole = records_[building].first_slot, first = whole + 1;
+    sums_.add(whole, impulse, duration);
     patches_.spread(contact.building, contact.place, contact_size_,
-                    [&](std::uint32_t patch, double share) { sums_.add(first + patch, share * impulse); });
+                    [&](std::uint32_t patch, double share) { sums_.add(first + patch, share * impulse, duration); });
     impact.impulse += impulse;
     if (!impact.hit) {
         impact.hit = true;
@@ -156,6 +159,19 @@ void ImpactRecorder::take_approach(const sim::Model& model, const sim::Ground& g
     }
 }
 
+void ImpactRecorder::take_pressures() {
+    for (const std::uint32_t slot : sums_.added()) {
+        const std::size_t building = slot_building_[slot];
+        Record& record = records_[building];
+        if (!record.touched) {
+            record.touched = true;
+            record.pressure = 0;
+            touched_.push_back(building);
+        }
+        if (slot != record.first_slot) record.pressure = std::max(record.pressure, sums_.rate(slot));
+    }
+}
+
 void ImpactRecorder::update_peaks(const sim::Ground& ground, std::size_t building, const sim::State& state) {
     const Record& record = records_[building];
     const double force = force_on(record), pressure = record.pressure;
@@ -185,14 +201,11 @@ void ImpactRecorder::after_step(const sim::Model& model, const sim::Ground& grou
     touched_.clear();
     failed_.clear();
     if (impacts_.empty()) return;
-    for (const sim::BuildingContact& contact : state.building_contacts) add_contact(state, contact);
+    for (const sim::BuildingContact& contact : state.building_contacts) add_contact(model, state, contact);
     sums_.advance(state.time, state.time_step);
     take_approach(model, ground, state);
-    for (const std::uint32_t slot : sums_.added()) {
-        Record& record = records_[slot_building_[slot]];
-        if (slot != record.first_slot) record.pressure = std::max(record.pressure, sums_.rate(slot));
-    }
-    // Without contact, filtered forces only decrease: nothing to do for the other buildings.
+    take_pressures();
+    // Where nothing arrives, filtered forces only decrease: nothing to do for the other buildings.
     for (const std::size_t building : touched_) {
         update_peaks(ground, building, state);
         records_[building].touched = false;

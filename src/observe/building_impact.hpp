@@ -23,7 +23,9 @@ namespace talus::observe {
 /// on its length, an average over a fixed time does not. Pressure is the same for a patch of the wall, divided by its
 /// area. A particle presses on a square two spacings wide, and at least as wide as the patches' edge: otherwise the
 /// pressure would be that of a single particle where particles are larger than patches, and that of chance contact
-/// points where they are far smaller. Depth and velocity are those of the flow in front of the wall.
+/// points where they are far smaller. Its impulse arrives over the time in which two spacings pass at its speed, or at
+/// sqrt(g spacing) if that is faster: a regular stream of density rho, depth h and speed v presses with rho v^2 h,
+/// whatever its spacing. Depth and velocity are those of the flow in front of the wall.
 class ImpactRecorder {
   public:
     /// Uses from `outputs` the filter window, the patch edge and the depth above which debris has a velocity.
@@ -58,16 +60,18 @@ class ImpactRecorder {
     struct Record {
         std::size_t first_slot = no_slot;  // of the whole structure; those of its patches follow. From the first hit on
         std::uint32_t patches = 0;
-        bool touched = false;                    // in this step
+        bool touched = false;                    // something of the impulses arrived in this step
         double pressure = 0;                     // Pa, highest of the patches touched in this step
         double depth = 0, dynamic_pressure = 0;  // of the flow in front of it, now
         double peak_depth = 0, peak_dynamic_pressure = 0, peak_speed = 0;  // so far, hit or not
     };
 
-    void add_contact(const sim::State& state, const sim::BuildingContact& contact);
+    void add_contact(const sim::Model& model, const sim::State& state, const sim::BuildingContact& contact);
     void give_slots(std::size_t building);
     void drop_slots(std::size_t building);
     void take_approach(const sim::Model& model, const sim::Ground& ground, const sim::State& state);
+    /// The highest pressure on every building at whose walls something arrived in this step.
+    void take_pressures();
     void update_peaks(const sim::Ground& ground, std::size_t building, const sim::State& state);
     /// Now, of the patch where it is highest, Pa.
     [[nodiscard]] double highest_pressure(const Record& record) const;

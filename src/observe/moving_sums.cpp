@@ -12,6 +12,23 @@ void MovingSums::add(std::size_t slot, double amount) {
     s.step += amount;
 }
 
+void MovingSums::add(std::size_t slot, double amount, double duration) {
+    arrivals_.push_back({amount, duration, static_cast<std::uint32_t>(slot)});
+}
+
+void MovingSums::take_arrivals(double time_step) {
+    std::size_t left = 0;
+    for (Arrival& arrival : arrivals_) {
+        const bool last = arrival.duration <= time_step;
+        const double amount = last ? arrival.amount : arrival.amount * (time_step / arrival.duration);
+        add(arrival.slot, amount);
+        arrival.amount -= amount;
+        arrival.duration -= time_step;
+        if (!last) arrivals_[left++] = arrival;
+    }
+    arrivals_.resize(left);
+}
+
 /// The part of an entry that lies before `begin`.
 void MovingSums::take_out(Entry& entry, double begin) {
     Slot& slot = slots_[entry.slot];
@@ -26,6 +43,7 @@ void MovingSums::take_out(Entry& entry, double begin) {
 }
 
 void MovingSums::advance(double time, double time_step) {
+    take_arrivals(time_step);
     for (const std::uint32_t slot : adding_) {
         Slot& s = slots_[slot];
         s.added = false;
@@ -52,9 +70,11 @@ void MovingSums::clear(std::size_t first, std::size_t count) {
     for (std::size_t slot = first; slot < first + count; ++slot) {
         slots_[slot].sum = slots_[slot].step = 0;
     }
+    const auto cleared = [&](std::size_t slot) { return slot >= first && slot < first + count; };
     for (std::size_t k = first_; k < entries_.size(); ++k) {
-        if (entries_[k].slot >= first && entries_[k].slot < first + count) entries_[k].amount = 0;
+        if (cleared(entries_[k].slot)) entries_[k].amount = 0;
     }
+    std::erase_if(arrivals_, [&](const Arrival& arrival) { return cleared(arrival.slot); });
 }
 
 }  // namespace talus::observe

@@ -6,8 +6,9 @@
 
 namespace talus::observe {
 
-/// Sums over numbered slots within a time window that ends now. Cost depends on what is added, not on the number of
-/// slots. A step that straddles the window's start, or is longer than it, counts with the part inside.
+/// Sums over numbered slots within a time window that ends now. An amount may arrive over a time that is longer than a
+/// step. Cost depends on what is added, not on the number of slots. A step that straddles the window's start, or is
+/// longer than it, counts with the part inside.
 class MovingSums {
   public:
     /// `window` in s.
@@ -19,6 +20,8 @@ class MovingSums {
 
     /// Adds to the step that the next advance() ends.
     void add(std::size_t slot, double amount);
+    /// Adds an amount that arrives evenly within `duration`, s, from the beginning of that step; at least the step.
+    void add(std::size_t slot, double amount, double duration);
     /// Ends a step at `time`.
     void advance(double time, double time_step);
     /// Slots that the last step added to.
@@ -34,6 +37,12 @@ class MovingSums {
         std::uint32_t entries = 0;  // of the slot; 0: the sum is exactly zero
         bool added = false;         // in the current step
     };
+    /// What has yet to arrive.
+    struct Arrival {
+        double amount, duration;  // s
+        std::uint32_t slot;
+    };
+    void take_arrivals(double time_step);
     /// What a step added to a slot.
     struct Entry {
         double begin, end, amount;  // s, s
@@ -43,6 +52,7 @@ class MovingSums {
 
     double window_;
     std::vector<Slot> slots_;
+    std::vector<Arrival> arrivals_;
     std::vector<Entry> entries_;  // in the order of time, from first_ on
     std::size_t first_ = 0;
     std::vector<std::uint32_t> adding_, added_;

@@ -107,6 +107,7 @@ struct BuildingContact {
     std::int32_t building;
     float impulse;       ///< kg m/s, normal to the wall
     LocalPoint place{};  ///< where on the wall
+    float speed = 0;     ///< m/s, of the particle as it would be without this impulse
 };
 
 /// Everything that changes during a run, as a structure of arrays in an order that every step recomputes so that

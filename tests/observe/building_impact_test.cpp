@@ -32,6 +32,7 @@ struct Collision {
     sim::State state;
     ImpactRecorder recorder;
     LocalPoint place = patch_middle;
+    float speed = 1e6F;  ///< all of an impulse arrives in its step
 
     explicit Collision(double window, double spacing = 0.4, double patch_edge = 1)
         : model(test::make_model(spacing)),
@@ -54,7 +55,7 @@ struct Collision {
         state.building_contacts.clear();
     }
     void touch(std::uint32_t particle, double force, const LocalPoint& at) {
-        state.building_contacts.push_back({particle, 1, static_cast<float>(force * state.time_step), at});
+        state.building_contacts.push_back({particle, 1, static_cast<float>(force * state.time_step), at, speed});
     }
     const BuildingImpact& house() const { return recorder.impacts()[1]; }
 };
@@ -111,6 +112,67 @@ TEST(ImpactRecorder, pressure_depends_on_the_patch_and_not_on_the_spacing) {
         EXPECT_NEAR(pressure_of_even_load(spacing, 0.5), 20000, 1) << spacing;
     }
     EXPECT_NEAR(pressure_of_even_load(0.5, 10), 12000, 1) << "1200 kN on 10 x 10 m, though the wall is 6 m high";
+}
+
+/// A stream as high as the western wall, 10 x 6 m, of a lattice whose layers arrive at it one after the other.
+TEST(ImpactRecorder, a_stream_presses_with_its_momentum_flux_whatever_its_spacing) {
+    const double density = 2000, speed = 8;
+    for (const double spacing : {2.0, 1.0, 0.5, 0.25}) {
+        Collision c(0.2, spacing);
+        c.speed = static_cast<float>(speed);
+        const double time_step = 0.005, between = spacing / speed;
+        double next = 0, delivered = 0;
+        while (c.state.time < 2) {
+            c.begin(time_step);
+            for (; next < c.state.time; next += between) {
+                for (double y = -5 + spacing / 2; y < 5; y += spacing) {
+                    for (double z = spacing / 2; z < 6; z += spacing) {
+                        const double impulse = density * spacing * spacing * spacing * speed;
+                        c.touch(0, impulse / time_step, {4, static_cast<float>(y), static_cast<float>(z)});
+                        delivered += impulse;
+                    }
+                }
+            }
+            c.recorder.after_step(c.model, c.ground, c.state);
+        }
+        EXPECT_NEAR(c.house().peak_force / (density * speed * speed * 60), 1, 0.02) << spacing;
+        EXPECT_NEAR(c.house().peak_impact_pressure / (density * speed * speed), 1, 0.02) << spacing;
+        EXPECT_NEAR(c.house().impulse / delivered, 1, 1e-6) << spacing;
+    }
+}
+
+TEST(ImpactRecorder, an_impulse_arrives_with_the_debris_behind_it_and_none_of_it_is_lost) {
+    Collision c(0.2, 0.4);
+    c.speed = 2;  // the two spacings take 0.4 s, twice the window
+    c.step(0.01, 60000, 0, 1);
+    double sum = 0;
+    for (int i = 0; i < 80; ++i) {
+        c.recorder.add_row(c.state);
+        sum += c.house().history.back().force * 0.01;
+        c.step(0.01, 0, 0, 0);
+    }
+    EXPECT_NEAR(c.house().peak_force, 600 / 0.4, 1);
+    EXPECT_NEAR(c.house().impulse, 600, 0.01);
+    EXPECT_NEAR(sum, 600, 0.1);
+    EXPECT_NEAR(c.house().history.back().force, 0, 1e-6);
+}
+
+TEST(ImpactRecorder, debris_at_rest_passes_its_pressure_on_at_the_speed_of_waves) {
+    Collision c(0.2, 0.4);
+    c.speed = 0;
+    c.step(0.01, 60000, 0, 1);
+    for (int i = 0; i < 80; ++i) c.step(0.01, 0, 0, 0);
+    EXPECT_NEAR(c.house().peak_force, 600 / (2 * std::sqrt(0.4 / c.model.gravity)), 1);
+}
+
+TEST(ImpactRecorder, a_structure_fails_when_the_rest_of_a_blow_arrives) {
+    Collision c(0.2, 0.4);
+    c.ground.buildings[1].resistance.pressure = 2000;
+    c.speed = 4;  // 0.2 s
+    c.step(0.01, 60000, 0, 1);
+    EXPECT_TRUE(c.recorder.failed().empty());
+    for (int i = 0; i < 30; ++i) c.step(0.01, 0, 0, 0);
+    EXPECT_NEAR(c.house().failure_time, 0.14, 0.011) << "no touch since the first, but 2/3 of it has arrived";
 }
 
 TEST(ImpactRecorder, a_lone_particle_presses_on_no_less_than_the_reference_area) {

@@ -44,6 +44,29 @@ TEST(MovingSums, added_names_the_slots_of_the_last_step_once) {
     EXPECT_TRUE(sums.added().empty());
 }
 
+TEST(MovingSums, an_amount_may_arrive_over_several_steps) {
+    MovingSums sums(1);
+    sums.resize(2);
+    sums.add(0, 6, 0.375);
+    sums.advance(0.125, 0.125);
+    EXPECT_DOUBLE_EQ(sums.rate(0), 2);
+    sums.add(0, 1);
+    sums.advance(0.25, 0.125);
+    EXPECT_DOUBLE_EQ(sums.rate(0), 5);
+    sums.advance(0.5, 0.25);
+    EXPECT_DOUBLE_EQ(sums.rate(0), 7) << "all has arrived within a longer step";
+    EXPECT_EQ(sums.added(), (std::vector<std::uint32_t>{0}));
+    sums.advance(0.625, 0.125);
+    EXPECT_TRUE(sums.added().empty());
+    sums.add(1, 3, 0.01);
+    sums.advance(0.75, 0.125);
+    EXPECT_DOUBLE_EQ(sums.rate(1), 3) << "faster than a step";
+    sums.add(0, 6, 10);
+    sums.clear(0, 1);
+    sums.advance(0.875, 0.125);
+    EXPECT_EQ(sums.rate(0), 0) << "what had yet to arrive is gone as well";
+}
+
 TEST(MovingSums, a_cleared_slot_starts_anew_and_the_others_stay) {
     MovingSums sums(1);
     sums.resize(2);

@@ -51,7 +51,7 @@ Simulation busy(BackendChoice choice, double spacing = 0.5) {
 /// Mean position, weight 1 per particle, and how many there are.
 struct Summary {
     Vec3<double> centre, momentum;
-    double count = 0, contacts = 0, impulse = 0;
+    double count = 0, contacts = 0, impulse = 0, impulse_times_speed = 0;
 };
 
 Summary summary_of(const State& state) {
@@ -64,18 +64,23 @@ Summary summary_of(const State& state) {
     s.centre = s.centre * (1 / s.count);
     s.momentum = s.momentum * (1 / s.count);
     s.contacts = static_cast<double>(state.building_contacts.size());
-    for (const BuildingContact& contact : state.building_contacts) s.impulse += contact.impulse;
+    for (const BuildingContact& contact : state.building_contacts) {
+        s.impulse += contact.impulse;
+        s.impulse_times_speed += static_cast<double>(contact.impulse) * static_cast<double>(contact.speed);
+    }
     return s;
 }
 
 TEST(Device, moves_a_whole_scene_as_the_processor_does) {
     Simulation processor = busy(BackendChoice::cpu), device = busy(BackendChoice::host);
-    double impulse = 0, impulse_of_device = 0;
+    double impulse = 0, impulse_of_device = 0, times_speed = 0, times_speed_of_device = 0;
     for (int i = 0; i < 120; ++i) {
         ASSERT_TRUE(processor.advance());
         ASSERT_TRUE(device.advance());
         impulse += summary_of(processor.state()).impulse;
         impulse_of_device += summary_of(device.state()).impulse;
+        times_speed += summary_of(processor.state()).impulse_times_speed;
+        times_speed_of_device += summary_of(device.state()).impulse_times_speed;
     }
     const State &a = processor.state(), &b = device.state();
     const Summary of_a = summary_of(a), of_b = summary_of(b);
@@ -87,6 +92,7 @@ TEST(Device, moves_a_whole_scene_as_the_processor_does) {
     EXPECT_NEAR(b.outflow, a.outflow, 0.1 * a.outflow);
     EXPECT_EQ(b.released(), a.released()) << "inflow";
     EXPECT_NEAR(impulse_of_device, impulse, 0.15 * impulse);
+    EXPECT_NEAR(times_speed_of_device, times_speed, 0.25 * times_speed);
     EXPECT_LT(length(of_b.centre - of_a.centre), 0.05) << "m";
     EXPECT_LT(length(of_b.momentum - of_a.momentum), 0.05) << "m/s";
     EXPECT_FALSE(too_compressed(b));

@@ -95,6 +95,30 @@ TEST(Boundaries, a_thin_wall_holds_what_is_thrown_at_it) {
     EXPECT_FALSE(simulation.state().building_contacts.empty());
 }
 
+TEST(Boundaries, an_impulse_tells_the_speed_of_what_hit_the_wall) {
+    const terrain::Terrain terrain = testing::terrain_of(40, 40, 1, [](double, double) { return 0; });
+    terrain::Building wall;
+    wall.footprint = {rectangle(20, 0, 22, 40)};
+    wall.height = 30;
+    std::vector<terrain::Building> buildings{wall};
+    place_buildings(terrain, buildings);
+    params::MaterialSpec material;
+    material.building_friction_coefficient = 0;
+    const Model model = make_model(material, {}, 0.4);
+    Simulation simulation(model, Ground(terrain, buildings, model.support_radius),
+                          testing::state_of({{-2, 0, 10}}, {{12, 5, 0}}));
+    double speed = 0, impulse = 0;
+    while (simulation.state().time < 0.5) {
+        ASSERT_TRUE(simulation.advance());
+        for (const BuildingContact& contact : simulation.state().building_contacts) {
+            speed = std::max(speed, double(contact.speed));
+            impulse += contact.impulse;
+        }
+    }
+    EXPECT_NEAR(speed, 13.1, 0.1) << "13 m/s, and what it has fallen";
+    EXPECT_NEAR(impulse / model.particle_mass(), 12, 0.01);
+}
+
 /// Four buildings around a square pit in the middle of level ground, `width` m wide.
 std::vector<terrain::Building> pit(const terrain::Terrain& terrain, double width) {
     const double a = 10 - width / 2, b = 10 + width / 2;

@@ -197,7 +197,8 @@ void Backend::measure_impacts(const Model& model, const Ground& ground, State& s
             const Vec3<float> end{displaced[0], displaced[1], displaced[2]};
             const Vec3<float> displacement{displaced[4], displaced[5], displaced[6]};
             state.building_contacts.push_back({i, wall.building, static_cast<float>(mass * normal / state.time_step),
-                                               end - wall.normal * (wall.distance + dot(displacement, wall.normal))});
+                                               end - wall.normal * (wall.distance + dot(displacement, wall.normal)),
+                                               speed_without_push(displacement, wall.normal, normal, state.time_step)});
         }
     }
 }

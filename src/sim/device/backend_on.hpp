@@ -194,7 +194,7 @@ class BackendOn final : public Backend {
     void measure_impacts(const Model&, const Ground&, State& state) override {
         state.building_contacts.clear();
         if (!needs_.walls) return;
-        executor_.for_each(state.awake, CountImpacts{data_, state.time_step});
+        executor_.for_each(state.awake, CountImpacts{data_});
         const std::uint32_t count = executor_.sum_up(data_.work.index, state.awake);
         if (count == 0) return;
         impacts_.reserve(count);

@@ -257,25 +257,21 @@ struct SpeedSquare {
     TALUS_DEVICE float operator()(std::uint32_t i) const { return dot(d.state.velocity[i], d.state.velocity[i]); }
 };
 
-/// The impulse on the wall `f` of a particle, kg m/s; 0: none.
-TALUS_DEVICE inline float impulse_on_wall(const Data& d, std::uint32_t i, std::size_t f, double time_step) {
+/// The correction of a step by the wall `f` of a particle, m along its normal; not above 0: none.
+TALUS_DEVICE inline float push_of_wall(const Data& d, std::uint32_t i, std::size_t f) {
     const BoundaryFace<float>& wall = d.work.walls[i].faces[f];
-    const float normal = d.work.walls[i].contacts[f].normal + boundary_push(wall.slope, d.state.multiplier[i]);
-    if (normal <= 0) return 0;
-    const double mass = density_of(d.model, d.state, i) * d.model.particle_volume();
-    return static_cast<float>(mass * static_cast<double>(normal) / time_step);
+    return d.work.walls[i].contacts[f].normal + boundary_push(wall.slope, d.state.multiplier[i]);
 }
 
 /// Counts the walls that a particle presses on.
 struct CountImpacts {
     Data d;
-    double time_step;
 
     TALUS_DEVICE void operator()(std::uint32_t i) const {
         std::uint32_t count = 0;
         const Walls& walls = d.work.walls[i];
         for (std::size_t f = 0; f < walls.faces.size() && walls.faces[f].building >= 0; ++f) {
-            if (impulse_on_wall(d, i, f, time_step) > 0) ++count;
+            if (push_of_wall(d, i, f) > 0) ++count;
         }
         d.work.index[i] = count;
     }
@@ -290,13 +286,15 @@ struct WriteImpacts {
     TALUS_DEVICE void operator()(std::uint32_t i) const {
         std::uint32_t at = d.work.index[i];
         const Walls& walls = d.work.walls[i];
+        const double mass = density_of(d.model, d.state, i) * d.model.particle_volume();
         for (std::size_t f = 0; f < walls.faces.size() && walls.faces[f].building >= 0; ++f) {
-            const float impulse = impulse_on_wall(d, i, f, time_step);
-            if (impulse <= 0) continue;
+            const float push = push_of_wall(d, i, f);
+            if (push <= 0) continue;
+            const auto impulse = static_cast<float>(mass * static_cast<double>(push) / time_step);
             const BoundaryFace<float>& wall = walls.faces[f];
             const Vec3<float> displacement = d.work.moved[i].vector(), end = d.work.corrected[i];
-            to[at++] = {i, wall.building, impulse,
-                        end - wall.normal * (wall.distance + dot(displacement, wall.normal))};
+            to[at++] = {i, wall.building, impulse, end - wall.normal * (wall.distance + dot(displacement, wall.normal)),
+                        speed_without_push(displacement, wall.normal, push, time_step)};
         }
     }
 };

@@ -53,6 +53,14 @@ TALUS_DEVICE Vec3<Real> resolve_face(const AnyModel& model, Real distance, const
                            friction_coefficient, strength, memory);
 }
 
+/// The speed of a particle that a step has displaced, m/s, as it would be without the correction `push`, m, along the
+/// normal of a wall: that of what hits the wall. The wall's friction is not taken out.
+template <class Real>
+TALUS_DEVICE Real speed_without_push(const Vec3<Real>& displacement, const Vec3<Real>& normal, Real push,
+                                     double time_step) {
+    return length(displacement - normal * push) * static_cast<Real>(1 / time_step);
+}
+
 /// Resistance of ground and walls to a particle.
 template <class Real>
 struct Grip {
