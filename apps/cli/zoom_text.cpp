@@ -16,7 +16,7 @@ std::string zoom_text(const run::ZoomRecord& zoom) {
         "m "
         "thick on average, {:.1f} particles of {:.3g} m",
         e.width(), e.height(), zoom.around.empty() ? "" : " around " + zoom.around, zoom.grid_cell, zoom.volumes.in,
-        zoom.event_volume, zoom.first_time(), zoom.mean_thickness, zoom.layers(), zoom.particle_spacing);
+        zoom.event_volume, zoom.first_time(), zoom.thickness, zoom.layers(), zoom.particle_spacing);
 }
 
 Result<std::string> zoom_cost_text(const scene::Scene& scene, const std::atomic<bool>& stop_requested) {

@@ -285,7 +285,7 @@ struct ZoomSpec {
     std::string polygon_file, layer;
     // At most one of the two; none: as in `[solver]`.
     std::optional<double> particle_spacing = {};  ///< m
-    std::optional<double> target_layers = {};     ///< over the mean thickness of what crosses the boundary
+    std::optional<double> target_layers = {};     ///< over the thickness of what crosses the boundary
     double surroundings = 5;                      ///< m beyond the boundary, after which particles are removed
     [[nodiscard]] bool wanted() const { return !structure.empty() || !polygon.empty() || !polygon_file.empty(); }
 };

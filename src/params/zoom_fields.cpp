@@ -46,8 +46,8 @@ Section declare_zoom() {
     s.optional_key("particle_spacing_m", "m", &ZoomSpec::particle_spacing, between(1e-4, 100),
                    "from target_layers, or that of the solver section", "Spacing of the particles in the zoom.");
     s.optional_key("target_layers", "", &ZoomSpec::target_layers, between(1, 1000), "from particle_spacing_m",
-                   "Particles over the mean thickness, normal to the slope, of the debris that crosses the boundary in "
-                   "the depth-averaged model.");
+                   "Particles over the greatest thickness, normal to the slope, with which debris crosses the boundary "
+                   "in the depth-averaged model.");
     s.at_most_one_of({"particle_spacing_m", "target_layers"});
     s.key("surroundings_m", "m", &ZoomSpec::surroundings, between(0, 1e4),
           "How far beyond the boundary particles are computed on; farther out they are removed.");

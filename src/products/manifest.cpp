@@ -148,7 +148,7 @@ Json zoom_json(const run::RunResult& result) {
             {"particle_volume_in_m3", zoom.brought_volume},
             {"momentum_in_Ns", {zoom.momentum.x, zoom.momentum.y}},
             {"particle_momentum_in_Ns", {zoom.brought_momentum.x, zoom.brought_momentum.y}},
-            {"mean_thickness_m", zoom.mean_thickness}};
+            {"thickness_m", zoom.thickness}};
 }
 
 Json results(const run::RunResult& result) {

@@ -72,7 +72,7 @@ Json zoom(const run::RunResult& result) {
             {"grid_cell_m", zoom.grid_cell},
             {"depth_averaged_wall_time_s", zoom.wall_time},
             {"particle_spacing_m", zoom.particle_spacing},
-            {"mean_thickness_m", zoom.mean_thickness},
+            {"thickness_m", zoom.thickness},
             {"layers", zoom.layers()},
             {"event_volume_m3", zoom.event_volume},
             {"volume_in_m3", zoom.volumes.in},

@@ -139,7 +139,7 @@ void BoundaryFlow::record(const depth::Solver& solver) {
                 now.momentum_y += volume * v;
                 const double sx = solver.slope_x_at(cell->column, cell->row);
                 const double sy = solver.slope_y_at(cell->column, cell->row);
-                thickness_ += volume * depth / std::sqrt(1 + sx * sx + sy * sy);
+                thickness_ = std::max(thickness_, depth / std::sqrt(1 + sx * sx + sy * sy));
             }
         }
     }
@@ -164,10 +164,6 @@ void BoundaryFlow::bring(const PlanPoint& place, double time, double volume, dou
 BoundaryFlow::Volumes BoundaryFlow::volumes() const {
     const double lacks = in_ + out_ > 0 ? (gained_ - (in_ - out_)) / (in_ + out_) : 0;
     return {in_ * (1 + lacks), out_ * (1 - lacks), in_, out_};
-}
-
-double BoundaryFlow::mean_thickness() const {
-    return in_ > 0 ? thickness_ / in_ : 0;
 }
 
 std::vector<double> BoundaryFlow::discharge() const {

@@ -35,8 +35,8 @@ class BoundaryFlow {
     [[nodiscard]] PlanPoint momentum() const;
     /// m3/s that came in, by interval.
     [[nodiscard]] std::vector<double> discharge() const;
-    /// Of what came in, normal to the slope, m.
-    [[nodiscard]] double mean_thickness() const;
+    /// Greatest of what came in, normal to the slope, m.
+    [[nodiscard]] double thickness() const { return thickness_; }
 
     /// As inflows across lines, one per piece that debris comes through, at right angles to the direction of the
     /// momentum that it brought. Each brings a whole number of particles, all together the volume that came in to the

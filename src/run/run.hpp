@@ -41,9 +41,9 @@ class Run {
     /// With the threads of `start.model.solver`.
     explicit Run(RunStart start);
 
-    /// A run of a loaded scene, with its releases seeded; of all of it: a zoom is for run_scene(). `particle_spacing`, m: absent, the scene's own. Errors: a
-    /// release smaller than a particle, more particles than solver.particle_limit, including those of inflows;
-    /// `progress` ended it.
+    /// A run of a loaded scene, with its releases seeded; of all of it: a zoom is for run_scene(). `particle_spacing`,
+    /// m: absent, the scene's own. Errors: a release smaller than a particle, more particles than
+    /// solver.particle_limit, including those of inflows; `progress` ended it.
     [[nodiscard]] static Result<std::unique_ptr<Run>> start(const scene::Scene& scene,
                                                             std::optional<double> particle_spacing = {},
                                                             const sim::Progress& progress = {});

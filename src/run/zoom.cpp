@@ -70,18 +70,18 @@ PlanPoint momentum_of(const std::vector<terrain::Inflow>& inflows, const terrain
     return sum;
 }
 
-Result<double> spacing_of(const scene::Scene& scene, double mean_thickness) {
+Result<double> spacing_of(const scene::Scene& scene, double thickness) {
     const params::ZoomSpec& zoom = scene.spec.zoom;
     const double spacing = zoom.particle_spacing ? *zoom.particle_spacing
-                           : zoom.target_layers  ? scene::spacing_of_layers(mean_thickness, *zoom.target_layers)
+                           : zoom.target_layers  ? scene::spacing_of_layers(thickness, *zoom.target_layers)
                                                  : particle_spacing(scene);
     const params::Parameter& key = params::parameter_of("zoom", "particle_spacing_m");
     if (!key.range.contains(spacing)) {
-        return Error{
-            fmt::format("zoom.target_layers = {:.6g} is refused; over {:.3g} m, the mean thickness of what crosses the "
-                        "boundary, it "
-                        "puts particles {:.4g} m apart, which must be {} m",
-                        zoom.target_layers.value_or(0), mean_thickness, spacing, key.range.text())};
+        return Error{fmt::format(
+            "zoom.target_layers = {:.6g} is refused; over {:.3g} m, the greatest thickness of what crosses the "
+            "boundary, it "
+            "puts particles {:.4g} m apart, which must be {} m",
+            zoom.target_layers.value_or(0), thickness, spacing, key.range.text())};
     }
     return spacing;
 }
@@ -111,7 +111,7 @@ Result<ZoomedScene> zoom_in(const scene::Scene& scene, const RunOptions& options
         return Error{file + ": interrupted before the particles of the zoom began"};
     }
     const BoundaryFlow::Volumes volumes = flow ? flow->volumes() : BoundaryFlow::Volumes{};
-    const double thickness = flow ? flow->mean_thickness() : 0;
+    const double thickness = flow ? flow->thickness() : 0;
     if (!(volumes.in > 0)) {
         return Error{file + ": the zoom is refused; no debris of the depth-averaged model crosses its boundary"};
     }
@@ -127,7 +127,7 @@ Result<ZoomedScene> zoom_in(const scene::Scene& scene, const RunOptions& options
     record.surroundings = scene.spec.zoom.surroundings;
     record.event_volume = total_volume(scene);
     record.particle_spacing = *spacing;
-    record.mean_thickness = thickness;
+    record.thickness = thickness;
     record.grid_cell = run.grid_cell;
     record.simulated_time = run.simulated_time;
     record.wall_time = run.wall_time;

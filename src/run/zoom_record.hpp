@@ -16,7 +16,7 @@ struct ZoomRecord {
     double surroundings = 0;                           ///< m beyond the boundary, after which particles are removed
     double event_volume = 0;                           ///< m3, of the event's releases and inflows
     double particle_spacing = 0;                       ///< m
-    double mean_thickness = 0;                         ///< m, normal to the slope, of what came in
+    double thickness = 0;                              ///< m, greatest normal to the slope, of what came in
     double grid_cell = 0;                              ///< m, of the depth-averaged model
     double simulated_time = 0, wall_time = 0;          ///< s, of its run
     BoundaryFlow::Volumes volumes;                     ///< in the depth-averaged model
@@ -25,7 +25,7 @@ struct ZoomRecord {
     PlanPoint momentum{0, 0}, brought_momentum{0, 0};  ///< N s in plan: of what came in, and of the particles
     std::vector<double> discharge;                     ///< m3/s that came in, every BoundaryFlow::interval
 
-    [[nodiscard]] double layers() const { return mean_thickness / particle_spacing; }
+    [[nodiscard]] double layers() const { return thickness / particle_spacing; }
     /// s, when debris first crosses the boundary.
     [[nodiscard]] double first_time() const;
 };

@@ -364,7 +364,7 @@ TEST(Report, SaysWhatAZoomWasAndItsBalance) {
     zoom.surroundings = 5;
     zoom.event_volume = 600;
     zoom.particle_spacing = 0.3;
-    zoom.mean_thickness = 1.2;
+    zoom.thickness = 1.2;
     zoom.grid_cell = 2.5;
     zoom.simulated_time = 60;
     zoom.volumes = {.in = 161, .out = 113.5, .sampled_in = 166.8, .sampled_out = 109.7};

@@ -69,7 +69,7 @@ TEST(BoundaryFlow, has_the_mass_and_momentum_of_a_stream_that_crosses_it_oblique
     EXPECT_NEAR(north, 0, 0.01 * 6 * volumes.in);
     EXPECT_NEAR(flow.momentum().x, east, 0.005 * east);
     EXPECT_NEAR(flow.momentum().y, 0, 0.01 * east);
-    EXPECT_NEAR(flow.mean_thickness(), 0.5, 0.1) << "30 m3/s at 6 m/s, 10 m wide";
+    EXPECT_NEAR(flow.thickness(), 0.5, 0.1) << "30 m3/s at 6 m/s, 10 m wide";
     double came = 0;
     for (const double discharge : flow.discharge()) came += discharge * BoundaryFlow::interval;
     EXPECT_NEAR(came, volumes.in, 1e-9 * volumes.in);
@@ -148,8 +148,8 @@ TEST_F(ZoomedRun, has_so_many_layers_over_what_crosses_the_boundary) {
     const auto zoomed = zoom_in(scene, {});
     ASSERT_TRUE(zoomed) << zoomed.error().message;
     EXPECT_NEAR(zoomed->record.layers(), 2, 0.01);
-    EXPECT_GT(zoomed->record.mean_thickness, 0.1);
-    EXPECT_LT(zoomed->record.mean_thickness, 2);
+    EXPECT_GT(zoomed->record.thickness, 0.1);
+    EXPECT_LT(zoomed->record.thickness, 2);
 }
 
 TEST_F(ZoomedRun, removes_particles_beyond_the_surroundings) {
