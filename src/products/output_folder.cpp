@@ -18,11 +18,17 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// Whether a folder was written by this program; only such a folder may ever be replaced.
+bool says(const fs::path& file, const char* key, const char* value) {
+    std::ifstream in(file);
+    const auto content = nlohmann::json::parse(in, nullptr, false);
+    return content.is_object() && content.value(key, nlohmann::json()) == value;
+}
+
+/// Whether a folder was written by this program, as the result of a run or of `talus compare`; only such a folder may
+/// ever be replaced.
 bool is_result_folder(const fs::path& folder) {
-    std::ifstream in(folder / "manifest.json");
-    const auto manifest = nlohmann::json::parse(in, nullptr, false);
-    return manifest.is_object() && manifest.value("program", nlohmann::json()) == "talus";
+    return says(folder / "manifest.json", "program", "talus") ||
+           says(folder / "results.json", "format", "talus comparison");
 }
 
 /// Why `path` may not be replaced; OK if it may, or if nothing is there.

@@ -1,4 +1,6 @@
 #include <filesystem>
+#include <set>
+#include <string>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -94,6 +96,15 @@ TEST(Compare, IgnoresTheModelOfTheScene) {
     EXPECT_EQ(event.at("event"), "result");
     EXPECT_NE(event.at("particles").at("hash"), event.at("depth_averaged").at("hash"));
     EXPECT_GT(event.at("agreement").at("both_m2"), 300);
+    std::set<int> runs;
+    for (const std::string& line : lines_of(outcome.out)) {
+        if (const auto now = nlohmann::json::parse(line); now.at("event") == "progress") runs.insert(now.at("run"));
+    }
+    EXPECT_TRUE(runs.contains(1)) << "progress of both runs together";
+
+    const ProgramOptions here{.folder = scene.folder()};
+    EXPECT_EQ(run_program({"compare", "slope.toml", "-o", "both"}, here).exit_code, 2) << "it is there";
+    EXPECT_EQ(run_program({"compare", "slope.toml", "-o", "both", "--force"}, here).exit_code, 0);
 }
 
 }  // namespace

@@ -216,6 +216,7 @@ class Plugin(unittest.TestCase):
         self.assertGreater(agreement["intersection_over_union"], 0.2)
         self.assertTrue(os.path.getsize(results["REPORT"]) > 0)
         self.assertEqual(log.shares, sorted(log.shares))
+        run("secondopinion", layers(OUTPUT=results["OUTPUT"], LOAD=False))  # into the same folder
 
     def test_makes_a_scene_to_keep_and_checks_it(self):
         scene = run("newscene", {**layers(), "OUTPUT": new_output("scene")})["SCENE"]
