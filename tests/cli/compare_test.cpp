@@ -98,7 +98,8 @@ TEST(Compare, IgnoresTheModelOfTheScene) {
     EXPECT_GT(event.at("agreement").at("both_m2"), 300);
     std::set<int> runs;
     for (const std::string& line : lines_of(outcome.out)) {
-        if (const auto now = nlohmann::json::parse(line); now.at("event") == "progress") runs.insert(now.at("run"));
+        if (const auto now = nlohmann::json::parse(line); now.at("event") == "progress")
+            runs.insert(now.at("run").get<int>());
     }
     EXPECT_TRUE(runs.contains(1)) << "progress of both runs together";
 
