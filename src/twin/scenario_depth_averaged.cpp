@@ -11,6 +11,7 @@
 #include "run/second_opinion.hpp"
 #include "twin/depth_averaged.hpp"
 #include "twin/scenario_parts.hpp"
+#include "twin/setup_file.hpp"
 
 namespace talus::twin {
 namespace {
