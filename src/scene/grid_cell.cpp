@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <utility>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -16,11 +17,6 @@ namespace {
 /// Below it a gully 5 m wide has two cells; measured on the terrain of Sham Tseng.
 constexpr double coarsest_default_cell = 2.5;
 constexpr double most_cells = 1e8;
-
-Status refuse(const ParsedScene& parsed, const std::string& key, const std::string& why) {
-    return Error{fmt::format("{}: the depth-averaged model {}; remove it, or use solver.model = \"particles\"",
-                             parsed.at(key), why)};
-}
 
 /// Keys that mean something to particles only: all others of their sections are used.
 constexpr std::array particle_keys = {"material.building_friction_coefficient",
@@ -52,19 +48,17 @@ constexpr std::array particle_keys = {"material.building_friction_coefficient",
                                       "outputs.impact_filter_window_s",
                                       "outputs.impact_patch_edge_m"};
 
-Status check_structures(const ParsedScene& parsed, const Scene& scene) {
-    for (const terrain::Building& building : scene.buildings) {
-        const std::string key = building.barrier ? "barrier" : "buildings.file";
-        const std::string name = fmt::format("\"{}\" ", building.name);
-        if (building.barrier && building.barrier->passing_share) {
-            return refuse(parsed, key, "has no nets, and " + name + "is one");
-        }
-        if (building.barrier && building.barrier->clearance) {
-            return refuse(parsed, key, "has nothing below a structure, and " + name + "has a clearance");
-        }
-        if (building.resistance != terrain::Resistance{}) {
-            return refuse(parsed, key, "has no structures that fail, and " + name + "has a resistance");
-        }
+std::optional<Lacking> lacking_structure(const terrain::Building& building) {
+    const std::string key = building.barrier ? "barrier" : "buildings.file";
+    const std::string name = fmt::format("\"{}\" ", building.name);
+    if (building.barrier && building.barrier->passing_share) {
+        return Lacking{key, "has no nets, and " + name + "is one"};
+    }
+    if (building.barrier && building.barrier->clearance) {
+        return Lacking{key, "has nothing below a structure, and " + name + "has a clearance"};
+    }
+    if (building.resistance != terrain::Resistance{}) {
+        return Lacking{key, "has no structures that fail, and " + name + "has a resistance"};
     }
     return {};
 }
@@ -80,14 +74,48 @@ double grid_cell(const Scene& scene) {
     return scene.spec.solver.grid_cell.value_or(cell / std::ceil(cell / coarsest_default_cell - 1e-9));
 }
 
-Status check_depth_averaged(const ParsedScene& parsed, Scene& scene) {
-    const params::SceneSpec& spec = scene.spec;
-    for (std::size_t k = 0; k < spec.releases.size(); ++k) {
-        if (!spec.releases[k].pore_pressure_ratio) continue;
-        return refuse(parsed, fmt::format("release[{}].pore_pressure_ratio", k),
-                      "has one pore pressure for all debris, that of the material");
+std::optional<Lacking> depth_averaged_lacks(const Scene& scene) {
+    for (std::size_t k = 0; k < scene.releases.size(); ++k) {
+        if (!scene.releases[k].spec.pore_pressure_ratio) continue;
+        return Lacking{fmt::format("release[{}].pore_pressure_ratio", k),
+                       "has one pore pressure for all debris, that of the material"};
     }
-    TALUS_TRY(check_structures(parsed, scene));
+    for (const terrain::Building& building : scene.buildings) {
+        if (auto lacking = lacking_structure(building)) return lacking;
+    }
+    return {};
+}
+
+std::vector<std::string> depth_averaged_notes(const Scene& scene) {
+    std::vector<std::string> unused;
+    const auto dense = [](const terrain::Inflow& inflow) { return inflow.has_density(); };
+    if (std::any_of(scene.inflows.begin(), scene.inflows.end(), dense)) {
+        unused.emplace_back("the density of hydrographs");
+    }
+    for (const char* key : particle_keys) {
+        if (scene.given_keys.contains(key)) unused.emplace_back(key);
+    }
+    const params::MaterialSpec& material = scene.spec.material;
+    if (material.kinematic_viscosity && !material.viscosity_on_ground) {
+        unused.emplace_back("material.kinematic_viscosity_m2ps without viscosity_on_ground");
+    }
+    std::vector<std::string> notes;
+    if (!unused.empty()) {
+        notes.push_back(fmt::format("the depth-averaged model has no use for {}", fmt::join(unused, ", ")));
+    }
+    notes.push_back(fmt::format(
+        "depth-averaged model on cells of {:.4g} m: one velocity over the depth; buildings and barriers are "
+        "whole cells, forces on them are weight and momentum flux of the flow beside them; no friction inside, no "
+        "falls, no splash",
+        grid_cell(scene)));
+    return notes;
+}
+
+Status check_depth_averaged(const ParsedScene& parsed, Scene& scene) {
+    if (const auto lacking = depth_averaged_lacks(scene)) {
+        return Error{fmt::format("{}: the depth-averaged model {}; remove it, or use solver.model = \"particles\"",
+                                 parsed.at(lacking->key), lacking->why)};
+    }
     const Extent e = scene.terrain.elevation().geometry.extent();
     const double cell = grid_cell(scene), cells = e.width() * e.height() / (cell * cell);
     if (cells > most_cells) {
@@ -98,25 +126,7 @@ Status check_depth_averaged(const ParsedScene& parsed, Scene& scene) {
                         std::ceil(1e3 * std::sqrt(e.width() * e.height() / most_cells)) / 1e3)};
     }
     TALUS_TRY(check_series(parsed, scene, cell, 0));
-    std::vector<std::string> unused;
-    const auto dense = [](const terrain::Inflow& inflow) { return inflow.has_density(); };
-    if (std::any_of(scene.inflows.begin(), scene.inflows.end(), dense)) {
-        unused.emplace_back("the density of hydrographs");
-    }
-    for (const char* key : particle_keys) {
-        if (scene.given_keys.contains(key)) unused.emplace_back(key);
-    }
-    if (spec.material.kinematic_viscosity && !spec.material.viscosity_on_ground) {
-        unused.emplace_back("material.kinematic_viscosity_m2ps without viscosity_on_ground");
-    }
-    if (!unused.empty()) {
-        scene.notes.push_back(fmt::format("the depth-averaged model has no use for {}", fmt::join(unused, ", ")));
-    }
-    scene.notes.push_back(fmt::format(
-        "depth-averaged model on cells of {:.4g} m: one velocity over the depth; buildings and barriers are "
-        "whole cells, forces on them are weight and momentum flux of the flow beside them; no friction inside, no "
-        "falls, no splash",
-        cell));
+    for (std::string& note : depth_averaged_notes(scene)) scene.notes.push_back(std::move(note));
     return {};
 }
 

@@ -1,6 +1,9 @@
 #pragma once
 
+#include <optional>
+#include <string>
 #include <string_view>
+#include <vector>
 
 #include "core/result.hpp"
 #include "scene/parse.hpp"
@@ -14,6 +17,17 @@ namespace talus::scene {
 
 /// Whether a key ("solver.kernel") means something to particles only: the depth-averaged model has no use for it.
 [[nodiscard]] bool for_particles_only(std::string_view key);
+
+/// Something of a scene that this model does not have.
+struct Lacking {
+    std::string key;  ///< at fault: "barrier"
+    std::string why;  ///< ends a sentence that begins with the model: "has no nets, and "dam" is one"
+};
+/// The first that a loaded scene needs; nothing: the model can run it.
+[[nodiscard]] std::optional<Lacking> depth_averaged_lacks(const Scene& scene);
+
+/// What it leaves out of a loaded scene that it can run, in sentences without capital and full stop.
+[[nodiscard]] std::vector<std::string> depth_averaged_notes(const Scene& scene);
 
 /// Refuses what this model does not have, and notes given keys that mean nothing to it. The scene is loaded.
 [[nodiscard]] Status check_depth_averaged(const ParsedScene& parsed, Scene& scene);

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "serve/calibrations.hpp"
+#include "serve/depth_averaged.hpp"
 #include "serve/ensembles.hpp"
 #include "serve/exports.hpp"
 #include "serve/router.hpp"
@@ -27,6 +28,8 @@ void add_session_routes(Router& router, Session& session);
 void add_scenario_routes(Router& router, Session& session, Exports& exports);
 void add_ensemble_routes(Router& router, const Ensembles& ensembles);
 void add_calibration_routes(Router& router, Session& session, Calibrations& calibrations);
+/// Of the depth-averaged model beside the live runs.
+void add_depth_averaged_routes(Router& router, Session& session, DepthAveraged& model);
 
 /// Calls `act` with the name of the requester if it may make changes now, otherwise answers why not.
 void change(Session& session, const Request& request, const Respond& respond,

@@ -12,7 +12,8 @@ OpenSession::OpenSession(Thread thread, std::shared_ptr<const scene::Scene> scen
     : session(std::move(thread), scene, options.tokens),
       exports(session, options.export_folder),
       calibrations(std::move(scene), options.calibration,
-                   [this](nlohmann::json status) { session.calibration(std::move(status)); }) {}
+                   [this](nlohmann::json status) { session.calibration(std::move(status)); }),
+      depth_averaged(session) {}
 
 Result<OpenSessionPtr> OpenSession::open(Thread thread, const std::shared_ptr<const scene::Scene>& scene,
                                          const ServerOptions& options, std::vector<OpeningScenario> scenarios) {
@@ -22,6 +23,7 @@ Result<OpenSessionPtr> OpenSession::open(Thread thread, const std::shared_ptr<co
     TALUS_TRY(made->session.open(options.scenario, on_failure));
     made->session.calibration(made->calibrations.describe());
     made->router = make_api(made->session, made->exports, made->ensembles, made->calibrations);
+    add_depth_averaged_routes(made->router, made->session, made->depth_averaged);
     const auto shared = std::make_shared<std::vector<OpeningScenario>>(std::move(scenarios));
     made->session.loop().post([shared, run = options.run](Scenarios& all) {
         for (OpeningScenario& one : *shared) all.put(one.index, std::move(one.scenario), one.title);
@@ -33,6 +35,7 @@ Result<OpenSessionPtr> OpenSession::open(Thread thread, const std::shared_ptr<co
 void OpenSession::close() {
     // Threads end while everything that they notify still exists.
     calibrations.close();
+    depth_averaged.close();
     session.close();
     exports.close();
 }

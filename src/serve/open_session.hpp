@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "serve/calibrations.hpp"
+#include "serve/depth_averaged.hpp"
 #include "serve/ensembles.hpp"
 #include "serve/exports.hpp"
 #include "serve/router.hpp"
@@ -41,6 +42,7 @@ struct OpenSession {
     Session session;
     Exports exports;
     Calibrations calibrations;
+    DepthAveraged depth_averaged;
     Router router;
 };
 

@@ -10,7 +10,7 @@
 namespace talus::serve {
 namespace {
 
-constexpr std::size_t longest_name = 40;
+constexpr std::size_t longest_person_name = 40;
 
 // Okabe and Ito (2008), Color Universal Design: told apart by colour-blind readers too.
 constexpr std::array<const char*, 7> colours = {"#e69f00", "#56b4e9", "#009e73", "#f0e442",
@@ -85,7 +85,7 @@ void People::leave(const std::string& id, Time now) {
 
 void People::rename(const std::string& id, const std::string& name) {
     Member* who = member(id);
-    const std::string tidy = tidy_name(name, longest_name);
+    const std::string tidy = tidy_name(name, longest_person_name);
     if (who != nullptr && !tidy.empty()) who->name = tidy;
 }
 

@@ -80,6 +80,7 @@ void Session::join(Viewer& viewer, Role role, const std::string& name, const std
     for (std::size_t i = 0; i < setups_.size(); ++i) {
         if (setups_[i]) viewer.send(setups_[i]);
         if (states_[i]) viewer.send(states_[i]);
+        if (depth_averaged_[i]) viewer.send(depth_averaged_[i]);
     }
     if (calibration_) viewer.send(calibration_);
     people_changed();
@@ -250,11 +251,19 @@ void Session::setup(int scenario, json setup) {
         setups_[static_cast<std::size_t>(scenario)] = text;
         for (const auto& [viewer, view] : viewers_) viewer->send(text);
     });
+    setups_changed_();
 }
 
 void Session::calibration(json status) {
     thread_.post([this, text = message_text("calibration", std::move(status))] {
         calibration_ = text;
+        for (const auto& [viewer, view] : viewers_) viewer->send(text);
+    });
+}
+
+void Session::depth_averaged(int scenario, json status) {
+    thread_.post([this, scenario, text = message_text("depth_averaged", std::move(status))] {
+        depth_averaged_[static_cast<std::size_t>(scenario)] = text;
         for (const auto& [viewer, view] : viewers_) viewer->send(text);
     });
 }
@@ -270,11 +279,12 @@ void Session::scenarios(std::vector<std::string> names) {
         names_ = names;
         for (int i = 0; i < Scenarios::max_count; ++i) {
             if (std::find(names.begin(), names.end(), Scenarios::name_of(i)) != names.end()) continue;
-            states_[i] = setups_[i] = nullptr;
+            states_[i] = setups_[i] = depth_averaged_[i] = nullptr;
             newest_[i] = {};
         }
         broadcast({{"type", "scenarios"}, {"scenarios", names}});
     });
+    setups_changed_();
 }
 
 void Session::people_changed() {

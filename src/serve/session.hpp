@@ -9,6 +9,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "serve/access.hpp"
@@ -70,6 +71,11 @@ class Session final : public Watcher {
 
     /// Sends the state of a calibration to everybody, also to those who join later; from any thread.
     void calibration(nlohmann::json status);
+    /// The same for the depth-averaged model of a scenario.
+    void depth_averaged(int scenario, nlohmann::json status);
+    /// `changed` is called from the loop's thread after every change of a setup, or of which scenarios there are. Once,
+    /// before open().
+    void watch_setups(std::function<void()> changed) { setups_changed_ = std::move(changed); }
 
     // Watcher, from the loop's thread.
     void frames(FrameSet set) override;
@@ -104,6 +110,8 @@ class Session final : public Watcher {
     std::vector<std::string> names_{"A"};
     std::array<Bytes, Scenarios::max_count> states_, setups_;  // as messages; for those who join
     Bytes calibration_;                                        // likewise
+    std::array<Bytes, Scenarios::max_count> depth_averaged_;   // likewise
+    std::function<void()> setups_changed_ = [] {};
     std::vector<Audience> audience_;
     /// Encoded frames, by cap.
     using Packed = std::vector<std::pair<unsigned, Bytes>>;

@@ -24,6 +24,7 @@
 
 namespace talus::twin {
 
+struct DepthAveragedRun;
 struct Journal;
 struct JournalEntry;
 
@@ -128,6 +129,15 @@ class Scenario {
     [[nodiscard]] std::function<nlohmann::json()> figures() const;
     /// Writes the run so far as `talus run` would, into an existing empty folder.
     [[nodiscard]] std::function<Status(const std::filesystem::path& folder)> products() const;
+
+    // The depth-averaged model of the present setup, beside this run (depth_averaged.hpp).
+
+    /// The present setup as a text: setups of one scene are the same if their texts are.
+    [[nodiscard]] std::string setup_key() const;
+    /// Makes the scene of the present setup, from time 0, for that model. Errors: as twin::for_depth_averaged().
+    [[nodiscard]] std::function<Result<scene::Scene>()> for_depth_averaged() const;
+    /// `{"time_s", "over", "rows", ...}` of docs/protocol.md: this run so far beside that one.
+    [[nodiscard]] std::function<nlohmann::json()> compared_with(std::shared_ptr<const DepthAveragedRun> other) const;
 
   private:
     struct Parts;

@@ -7,6 +7,7 @@ import { resolve } from "node:path";
 import { existsSync, Run } from "./twin/harness.mjs";
 import { testBackanalysis } from "./twin/backanalysis.mjs";
 import { testBarrier } from "./twin/barrier.mjs";
+import { testDepthAveraged } from "./twin/depth_averaged.mjs";
 import { testErosion } from "./twin/erosion.mjs";
 import { testLook } from "./twin/look.mjs";
 import { testGround } from "./twin/ground.mjs";
@@ -38,7 +39,7 @@ const browser = await chromium.launch({ executablePath: browserPath, args: ["--h
   "--disable-component-update", "--no-first-run"] });
 const run = new Run(browser, resolve(output), command, process.env.TALUS_ONLY);
 const parts = { controls: testControls, readings: testReadings, scenarios: testScenarios, barrier: testBarrier, parts: testParts, erosion: testErosion, ground: testGround, look: testLook, photo: testPhoto,
-  backanalysis: testBackanalysis, sharing: testSharing, start: testStart };
+  backanalysis: testBackanalysis, depth_averaged: testDepthAveraged, sharing: testSharing, start: testStart };
 try {
   for (const part of (process.env.TALUS_PARTS ?? Object.keys(parts).join()).split(",")) {
     if (!parts[part]) throw new Error(`TALUS_PARTS names ${part}; there are ${Object.keys(parts).join(", ")}`);

@@ -114,6 +114,7 @@ TEST_F(OpenApi, every_route_answers_as_described) {
         {"/api/control", {{"do", "request"}}},
         {"/api/share", {{"address", "192.0.2.1"}}},
         {"/api/scenarios", {{"copy_of", "A"}}},
+        {"/api/depth_averaged", {{"on", true}}},
         {"/api/calibration",
          {{"parameters", {{{"key", "material.friction_coefficient"}, {"low", 0.1}, {"high", 0.6}}}}, {"runs", 9}}}};
     const std::map<std::string, int> refused = {{"/api/control", 409},
@@ -140,7 +141,9 @@ TEST_F(OpenApi, every_route_answers_as_described) {
                                                 {"/api/jobs/{id}/cancel", 409},
                                                 {"/api/jobs/{id}/resume", 409},
                                                 {"/api/reports/{ticket}", 404},
-                                                {"/api/quit", 409}};  // this server has no start page
+                                                {"/api/quit", 409},  // this server has no start page
+                                                {"/api/scenarios/{s}/depth_averaged/layers/{name}", 404},
+                                                {"/api/scenarios/{s}/depth_averaged/comparison", 404}};  // off
     for (const serve::Route& route : server_->routes()) {
         SCOPED_TRACE(route.method + " " + route.pattern);
         const std::string name = names.count(route.pattern) ? names.at(route.pattern) : "nothing";
@@ -164,6 +167,24 @@ TEST_F(OpenApi, every_route_answers_as_described) {
             expect_described(route.method, route.pattern, none);
         }
     }
+}
+
+TEST_F(OpenApi, the_depth_averaged_model_answers_as_described) {
+    start({"solver.end_time_s=3"});
+    const std::string route = "/api/scenarios/{s}/depth_averaged", path = filled(route, "A", "");
+    HttpClient hand = as_controller();
+    act({{"action", "step"}});
+    ASSERT_EQ(hand.post("/api/depth_averaged", {{"on", true}}).status, 200);
+    for (int i = 0; i < 1000 && hand.get(path).json()["state"] != "done"; ++i) {
+        std::this_thread::sleep_for(std::chrono::milliseconds(20));
+    }
+    ASSERT_EQ(hand.get(path).json()["state"], "done");
+    expect_described("GET", route, hand.get(path));
+    expect_described("GET", route + "/comparison", hand.get(path + "/comparison"));
+    for (const char* rest : {"/layers/depth?time_s=1", "/layers/nothing", "/layers/depth?time_s=soon"}) {
+        expect_described("GET", route + "/layers/{name}", hand.get(path + rest));
+    }
+    expect_described("POST", "/api/depth_averaged", hand.post("/api/depth_averaged", {{"on", 2}}));
 }
 
 TEST_F(OpenApi, wrong_values_are_refused_as_described) {

@@ -6,6 +6,7 @@ import { sectionPanel } from "./charts/section";
 import { frontCharts, timeCharts } from "./charts/series_charts";
 import { calibratePanel } from "./panels/calibrate";
 import { ComparePanel } from "./panels/compare";
+import { DepthAveragedPanel } from "./panels/depth_averaged";
 import { exportButtons } from "./panels/exports";
 import { impactColour, impactsPanel, largestPressure } from "./panels/impacts";
 import { help, keys } from "./panels/keys";
@@ -65,9 +66,10 @@ function buildPage(page: HTMLElement, twin: Twin): void {
 
   const probes = new Probes(twin);
   const compare = new ComparePanel(twin, picture);
+  const secondModel = new DepthAveragedPanel(twin);
   const section = sectionPanel(twin, stage);
   const readings = tabs("Readings", [
-    { name: "front", title: "Front", content: frontCharts(twin) },
+    { name: "front", title: "Front", content: frontCharts(twin, secondModel.element) },
     { name: "time", title: "Time", content: timeCharts(twin) },
     { name: "points", title: "Points", content: probes.element },
     { name: "section", title: "Section", content: section.element },
@@ -84,6 +86,7 @@ function buildPage(page: HTMLElement, twin: Twin): void {
     if (line) readings.show("section");
   });
   new Refresher(twin, () => {
+    if (readings.shown() === "front") void secondModel.refresh();
     if (readings.shown() === "points") void probes.refresh();
     if (readings.shown() === "section") section.refresh();
     if (readings.shown() === "compare") void compare.refresh();

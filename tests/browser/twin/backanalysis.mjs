@@ -25,7 +25,7 @@ export async function testBackanalysis(run) {
 
 async function testMaps(run, page) {
   await run.check("maps of an ensemble are layers with title, unit, threshold and number of runs", async () => {
-    const group = page.locator(`${layerSelect} optgroup`);
+    const group = page.locator(`${layerSelect} optgroup:not(.depth-averaged)`);
     await until(() => group.count(), (n) => n === 1, "a group of layers");
     assert.equal(await group.getAttribute("label"), "Ensemble ensemble of friction, 6 runs");
     await page.locator("label:has-text('Particles') input").uncheck();

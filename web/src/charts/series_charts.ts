@@ -8,6 +8,7 @@ import { Chart, joined, type Curve } from "./chart";
 
 /** Of the two that are shown. */
 const colours = ["#0b5fa5", "#d1640f"];
+const depthAveragedColours = ["#7b3fa0", "#2f7d4f"];
 const observationColour = "#a3262a";
 
 /** Every n-th value of a long column, few enough to plot. */
@@ -19,21 +20,31 @@ function thinned(column: Column, most = 600): number[] {
   return picked;
 }
 
-export function frontCharts(twin: Twin): HTMLElement {
+/** below: what stands under the charts. */
+export function frontCharts(twin: Twin, below: HTMLElement): HTMLElement {
   const velocity = new Chart({ title: "Front velocity along the flow path", x: { label: "Chainage", unit: "m" }, y: { label: "Front velocity", unit: "m/s" }, curves: [],
     height: 230, empty: "The front has not moved yet. Run the simulation: velocities appear as it passes each chainage." });
   const arrival = new Chart({ title: "Arrival of the front", x: { label: "Chainage", unit: "m" }, y: { label: "Time", unit: "s" }, curves: [], height: 170,
     empty: "No arrivals yet." });
   const observed = twin.scene.observations;
-  watchAll([twin.shown, ...twin.every("series"), twin.replay_s], () => {
-    const tables = [];
+  watchAll([twin.shown, ...twin.every("series"), ...twin.every("depthAveraged"), twin.replay_s], () => {
+    const tables: { x: Column; y: Column }[] = [];
     const curves: Curve[] = [];
-    const times = [];
+    const times: { x: Column; y: Column }[] = [];
     const timeCurves: Curve[] = [];
     for (const [i, name] of twin.shown.value.entries()) {
       const front = seriesUntil(twin.cells[name].series.value, twin.replay_s.value)?.front;
-      if (!front || front.chainage_m.length === 0) continue;
       const suffix = twin.shown.value.length > 1 ? ` ${name}` : "";
+      // The whole run of the other model, also ahead of the particles.
+      const other = twin.cells[name].depthAveraged.value?.result?.front;
+      if (other && other.chainage_m.length > 0) {
+        const like = { colour: depthAveragedColours[i], dashed: true };
+        tables.push({ x: other.chainage_m, y: other.front_velocity_mps });
+        curves.push({ label: `Depth-averaged${suffix}`, unit: "m/s", ...like });
+        times.push({ x: other.chainage_m, y: other.arrival_time_s });
+        timeCurves.push({ label: `Depth-averaged${suffix}`, unit: "s", ...like });
+      }
+      if (!front || front.chainage_m.length === 0) continue;
       tables.push({ x: front.chainage_m, y: front.front_velocity_mps }, { x: front.chainage_m, y: front.particle_speed_mps });
       curves.push({ label: `Front${suffix}`, unit: "m/s", colour: colours[i], points: front.chainage_m.length < 40 },
         { label: `Debris at front${suffix}`, unit: "m/s", colour: colours[i], dashed: true });
@@ -50,7 +61,7 @@ export function frontCharts(twin: Twin): HTMLElement {
   const list = h("ul", { class: "observations" }, ...observed.map((o) =>
     h("li", {}, `${o.name}: ${o.front_velocity_mps} m/s at ${o.chainage_m} m (${o.source})`)));
   const note = twin.scene.flow_path ? null : h("p", { class: "hint" }, "This scene has no flow path: there is no chainage to plot against.");
-  return h("div", {}, note, velocity.element, observed.length > 0 ? h("div", { class: "hint" }, "Observations", list) : null, arrival.element);
+  return h("div", {}, note, velocity.element, observed.length > 0 ? h("div", { class: "hint" }, "Observations", list) : null, arrival.element, below);
 }
 
 interface Plotted { column: string; label: string; colour: string }

@@ -2,11 +2,12 @@
 import { css, divergingAt, rampAt, ramps, roundStep, type Rgb } from "../scene/colour";
 import { contourInterval } from "../scene/ground";
 import type { Category } from "../protocol/messages";
-import { colourOf, infoOf, isEnsembleLayer } from "../scene/layers";
+import { colourOf, infoOf, isDepthAveragedLayer, isEnsembleLayer } from "../scene/layers";
 import type { ShownLayers } from "../scene/shown_layers";
 import type { Stage } from "../scene/stage";
 import { watchAll } from "../state/cell";
 import { largestPressure } from "./impacts";
+import { sourceText } from "../state/depth_averaged";
 import { changesText } from "../state/differences";
 import { fixed, quantity, tick, unitText } from "../state/format";
 import type { Twin } from "../state/twin";
@@ -40,6 +41,11 @@ export function presentLegends(twin: Twin, stage: Stage, layers: ShownLayers): L
         ...(info.from ? { from: info.from } : {}), ...(info.categories ? { categories: info.categories } : {}) });
       return list;
     }
+    if (isDepthAveragedLayer(name)) {
+      list.push({ title: info.title + (layers.isDifference ? `, ${twin.differenceName}` : ""), unit: info.unit, low, high, note: info.help,
+        at: (s) => (layers.isDifference ? divergingAt(2 * s - 1) : rampAt(info.ramp, s)), from: [...new Set(twin.shown.value.map((s) => sourceText(twin.cells[s].depthAveraged.value)))].join("; ") });
+      return list;
+    }
     const title = (name === "depth" && time !== null ? "Depth" : info.title) + (layers.isDifference ? `, ${twin.differenceName}` : "") +
       (time === null ? "" : name === "depth" || name === "deposit_depth" ? ` at ${fixed(time, 1)} s` : ` until ${fixed(time, 1)} s`);
     list.push(layers.isDifference ? { title, unit: info.unit, low, high, at: (s) => divergingAt(2 * s - 1) }
@@ -64,7 +70,7 @@ export function legends(twin: Twin, stage: Stage, layers: ShownLayers): HTMLElem
       return h("span", {}, dot, c.name);
     }));
   classes.title = twin.scene.intensity.rule;
-  watchAll([twin.look, twin.particles, twin.surface, twin.layer, twin.difference, layers.range, layers.shown_s, stage.fastest_mps, twin.houseColour, twin.shown, ...twin.every("impacts"), ...twin.every("setup")], () => {
+  watchAll([twin.look, twin.particles, twin.surface, twin.layer, twin.difference, layers.range, layers.shown_s, stage.fastest_mps, twin.houseColour, twin.shown, ...twin.every("impacts"), ...twin.every("setup"), ...twin.every("depthAveraged")], () => {
     const anyHit = twin.shown.value.some((s) => twin.cells[s].impacts.value?.buildings.some((b) => b.hit));
     const present = presentLegends(twin, stage, layers);
     classes.hidden = twin.houseColour.value !== "intensity" || !anyHit;

@@ -6,6 +6,7 @@ import type { Stage } from "../scene/stage";
 import { watchAll } from "../state/cell";
 import type { SurfaceColour, Twin } from "../state/twin";
 import { button, h, type IconName } from "../ui/dom";
+import { depthAveragedOptions, depthAveragedSwitch } from "./depth_averaged";
 import { momentOf, textOf } from "../scene/natural/sun";
 
 const savedKey = "talus-views";
@@ -68,7 +69,7 @@ export function viewBar(twin: Twin, stage: Stage): ViewBar {
   const surface = h("select", { "aria-label": "Debris as a surface", onchange: () => (twin.surface.value = surface.value as SurfaceColour) },
     h("option", { value: "off" }, "no surface"), h("option", { value: "depth" }, "surface by depth"), h("option", { value: "speed" }, "surface by speed"));
   const layer = h("select", { "aria-label": "Map layer on the ground", onchange: () => (twin.layer.value = layer.value as ShownLayer | "none") },
-    h("option", { value: "none" }, "no layer"), ...layerNames.map((name) => h("option", { value: name, title: layerInfo[name].help }, layerInfo[name].title)));
+    h("option", { value: "none" }, "no layer"), ...layerNames.map((name) => h("option", { value: name, title: layerInfo[name].help }, layerInfo[name].title)), depthAveragedOptions(twin));
   // A selected layer remains in the list, also while there is no erosion again.
   const erosion = layer.querySelector<HTMLOptionElement>("option[value=erosion_depth]");
   watchAll([...twin.every("state"), twin.layer], () => {
@@ -76,7 +77,7 @@ export function viewBar(twin: Twin, stage: Stage): ViewBar {
     if (erosion) erosion.hidden = erosion.disabled = !some && twin.layer.value !== "erosion_depth";
   });
   twin.ensembles.watch((list) => {
-    layer.querySelectorAll("optgroup").forEach((group) => group.remove());
+    layer.querySelectorAll("optgroup:not(.depth-averaged)").forEach((group) => group.remove());
     layer.append(...list.map((ensemble) => h("optgroup", { label: `Ensemble ${ensembleTitle(ensemble)}` }, ...ensemble.maps.map((map) => {
       const key = ensembleLayer(ensemble, map);
       return h("option", { value: key, title: infoOf(key, list).help }, map.title + (map.greatest === null ? " (nowhere)" : ""));
@@ -118,7 +119,7 @@ export function viewBar(twin: Twin, stage: Stage): ViewBar {
   const camera = h("div", { class: "bar camera", role: "toolbar", "aria-label": "Camera" }, ...buttons,
     button("Fit", { icon: "fit", bare: true, title: "Whole scene (F)", onclick: () => stage.rig.fit() }), save, saved, open);
   const show = h("div", { class: "bar show", role: "toolbar", "aria-label": "Display options" },
-    h("label", { class: "check", title: "Debris and ground as they would look, or by colours of a legend (N)" }, natural, "Natural"), sun, particlesLabel, surface, layer, opacity, differenceLabel,
+    h("label", { class: "check", title: "Debris and ground as they would look, or by colours of a legend (N)" }, natural, "Natural"), sun, particlesLabel, surface, layer, opacity, depthAveragedSwitch(twin), differenceLabel,
     photoLabel, contoursLabel, h("label", { class: "check" }, names, "Names"));
   return { camera, show, setMode, recall };
 }

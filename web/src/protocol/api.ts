@@ -1,7 +1,7 @@
 // The HTTP half of docs/protocol.md.
 import { decodeFrame, type Frame, type ScenarioName } from "./frame";
 import { decodeGrid, type Grid } from "./grid";
-import type { Action, Done, Ensemble, ExportFile, Figure, Impacts, LayerName, NewScenario, ProbeSeries, Recording, SceneInfo, Series, Session, Share, WantedShare } from "./messages";
+import type { Action, DepthAveragedComparison, Done, Ensemble, ExportFile, Figure, Impacts, LayerName, NewScenario, ProbeSeries, Recording, SceneInfo, Series, Session, Share, WantedShare } from "./messages";
 import type { Checked, Draft, DraftRole, JobEstimate, JobForm, MendingOfTerrain, StartPage, ValidationCase, WantedJob, WantedScene } from "./start";
 
 /** The server's answer to a request that it refused. */
@@ -66,6 +66,11 @@ export class Api {
   recording = (s: ScenarioName): Promise<Recording> => this.json(`scenarios/${s}/recording`);
   layer = async (s: ScenarioName, name: LayerName, time_s: number | null = null): Promise<Grid> =>
     decodeGrid(await this.binary(`scenarios/${s}/layers/${name}${at(time_s)}`));
+  /** Of the depth-averaged model. */
+  depthAveragedLayer = async (s: ScenarioName, name: LayerName, time_s: number | null): Promise<Grid> =>
+    decodeGrid(await this.binary(`scenarios/${s}/depth_averaged/layers/${name}${at(time_s)}`));
+  depthAveragedComparison = (s: ScenarioName): Promise<DepthAveragedComparison> => this.json(`scenarios/${s}/depth_averaged/comparison`);
+  turnDepthAveraged = async (on: boolean): Promise<void> => void (await this.ask("POST", "depth_averaged", { on }));
   ensembles = async (): Promise<Ensemble[]> => (await this.json<{ ensembles: Ensemble[] }>("ensembles")).ensembles;
   ensembleMap = async (ensemble: string, name: string): Promise<Grid> => decodeGrid(await this.binary(`ensembles/${ensemble}/maps/${name}`));
   orthophoto = (): Promise<Blob> => this.blob("orthophoto");

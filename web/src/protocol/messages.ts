@@ -271,8 +271,45 @@ export interface Ensemble {
   maps: EnsembleMap[];
 }
 export type EnsembleLayer = `ensemble/${string}/${string}`;
-/** A layer on the ground: of the run, or a map of an ensemble. */
-export type ShownLayer = LayerName | EnsembleLayer;
+
+/** What the depth-averaged model has a map of. */
+export const quantityNames = ["depth", "peak_depth", "peak_speed", "peak_pressure", "arrival_time", "deposit_depth"] as const;
+export type DepthAveragedLayer = `depth_averaged/${(typeof quantityNames)[number]}`;
+/** Of the present setup, from time 0 to its end. */
+export interface DepthAveragedResult {
+  end_s: number;
+  complete: boolean;
+  stop_reason: string;
+  wall_time_s: number;
+  processor_time_s: number;
+  grid_cell_m: number;
+  hash: string;
+  /** Sentences on what the model leaves out. */
+  notes: string[];
+  front: { chainage_m: Column; arrival_time_s: Column; front_velocity_mps: Column };
+}
+export interface DepthAveragedStatus {
+  scenario: ScenarioName;
+  state: "off" | "waiting" | "running" | "done" | "refused" | "failed";
+  /** Why it was refused or failed. */
+  message: string;
+  share: number | null;
+  result: DepthAveragedResult | null;
+}
+/** A quantity of both models: particles so far, the other model by the same time and at its end. */
+export interface DepthAveragedRow { key: string; name: string; unit: string; decimals: number; particles: number | null; depth_averaged_by_then: number | null; depth_averaged: number | null; observed: number | null }
+export interface DepthAveragedComparison {
+  time_s: number;
+  /** The particles' run is over: then both are compared as a whole. */
+  over: boolean;
+  rows: DepthAveragedRow[];
+  least_depth_m: number;
+  area: { both_m2: number; particles_only_m2: number; depth_averaged_only_m2: number; intersection_over_union: number | null };
+  /** Sentences on how the setups of both differ. */
+  differs: string[];
+}
+/** A layer on the ground: of the run, of the depth-averaged model, or a map of an ensemble. */
+export type ShownLayer = LayerName | DepthAveragedLayer | EnsembleLayer;
 
 export type Action =
   | { action: "run" | "pause" | "step" | "restart"; scenarios: ScenarioName[] }
@@ -299,6 +336,7 @@ export type ServerMessage =
   | ({ type: "setup" } & Setup)
   | { type: "people"; people: Person[]; controller: string | null; request: { id: string; name: string } | null }
   | ({ type: "calibration" } & CalibrationStatus)
+  | ({ type: "depth_averaged" } & DepthAveragedStatus)
   | { type: "scenarios"; scenarios: ScenarioName[] }
   | { type: "ended" }
   | { type: "done"; scenario: ScenarioName; by: string; done: string };

@@ -1,7 +1,7 @@
 // The map layers: names, units, colours, and the conversion of a grid to a texture on the ground.
 import { DataTexture, FloatType, LinearFilter, NearestFilter, RGFormat, Vector4 } from "three";
 import type { Grid } from "../protocol/grid";
-import type { Category, Ensemble, EnsembleLayer, EnsembleMap, LayerName, Place, ShownLayer } from "../protocol/messages";
+import { quantityNames, type Category, type DepthAveragedLayer, type Ensemble, type EnsembleLayer, type EnsembleMap, type LayerName, type Place, type ShownLayer } from "../protocol/messages";
 import { fromHex, rampAt, ramps, roundStep, type Ramp, type Rgb } from "./colour";
 import type { Draped } from "./ground";
 
@@ -27,6 +27,15 @@ export const layerInfo: Record<LayerName, LayerInfo> = {
 };
 
 export const isEnsembleLayer = (name: ShownLayer | "none"): name is EnsembleLayer => name.startsWith("ensemble/");
+const ofDepthAveraged = "depth_averaged/";
+export const isDepthAveragedLayer = (name: ShownLayer | "none"): name is DepthAveragedLayer => name.startsWith(ofDepthAveraged);
+/** The map of the depth-averaged model that shows what this one of the run does; null: it has none. */
+export function depthAveragedLayer(name: LayerName): DepthAveragedLayer | null {
+  const quantity = quantityNames.find((q) => q === name);
+  return quantity ? `${ofDepthAveraged}${quantity}` : null;
+}
+/** What a layer of either model shows. */
+export const quantityOf = (name: LayerName | DepthAveragedLayer): LayerName => (isDepthAveragedLayer(name) ? name.slice(ofDepthAveraged.length) as LayerName : name);
 export const ensembleLayer = (ensemble: Ensemble, map: EnsembleMap): EnsembleLayer => `ensemble/${ensemble.id}/${map.name}`;
 const plural = (count: number, what: string): string => `${count} ${what}${count === 1 ? "" : "s"}`;
 
@@ -41,6 +50,10 @@ export function findMap(ensembles: readonly Ensemble[], name: EnsembleLayer): { 
 }
 /** Name and colours of a layer. */
 export function infoOf(name: ShownLayer, ensembles: readonly Ensemble[]): LayerInfo {
+  if (isDepthAveragedLayer(name)) {
+    const info = layerInfo[quantityOf(name)];
+    return { ...info, title: `${info.title}, depth-averaged`, help: `${info.help.replace(/ so far/, "")}, of the depth-averaged model of the present setup, from time 0` };
+  }
   if (!isEnsembleLayer(name)) return layerInfo[name];
   const found = findMap(ensembles, name);
   if (!found) return { title: "Map of an ensemble", unit: "", ramp: ramps.probability, help: "" };

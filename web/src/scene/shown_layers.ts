@@ -2,16 +2,20 @@
 import type { Texture } from "three";
 import { scenarioNames, type ScenarioName } from "../protocol/frame";
 import { gridAt, type Grid } from "../protocol/grid";
-import type { EnsembleLayer, LayerName, ShownLayer } from "../protocol/messages";
+import type { DepthAveragedLayer, EnsembleLayer, LayerName, ShownLayer } from "../protocol/messages";
 import { Cell, watchAll } from "../state/cell";
 import type { Twin } from "../state/twin";
 import { divergingAt, rampAt, ramps, roundStep } from "./colour";
+import { DepthAveragedMaps } from "./depth_averaged_maps";
 import { rampTexture, type Photo } from "./ground";
 import { photoTexture } from "./photo";
-import { colourOf, differenceOf, drapedFrom, findMap, infoOf, inUnit, isEnsembleLayer, rangeOfMap, scaleEnd, shownOfMap, shownValues } from "./layers";
+import { colourOf, differenceOf, drapedFrom, findMap, infoOf, inUnit, isDepthAveragedLayer, isEnsembleLayer, quantityOf, rangeOfMap, scaleEnd, shownOfMap, shownValues } from "./layers";
 import type { Stage } from "./stage";
 
 const refresh_ms = 2000;
+
+/** A layer of a run, of one of both models. */
+type RunLayer = LayerName | DepthAveragedLayer;
 
 export class ShownLayers {
   /** Values at the ends of the legend. */
@@ -26,10 +30,15 @@ export class ShownLayers {
   private readonly rampTextures = new Map<string, Texture>();
   private readonly held = new Map<ScenarioName, Texture>();
   private photo: Photo | null = null;
+  private readonly otherModel: DepthAveragedMaps;
   private busy = false;
   private again = false;
 
   constructor(private readonly twin: Twin, private readonly stage: Stage) {
+    this.otherModel = new DepthAveragedMaps(twin, () => {
+      this.forgetStale();
+      if (this.isLive) void this.load();
+    });
     watchAll([twin.layer, twin.difference, twin.shown, twin.replay_s], () => void this.load());
     twin.layerOpacity.watch(() => this.put());
     watchAll([twin.look, twin.layer, twin.surface, twin.particles, twin.contours, twin.shown, stage.fastest_mps], () => this.putSurface());
@@ -86,17 +95,38 @@ export class ShownLayers {
       const names = this.twin.shown.value;
       const time = this.twin.replay_s.value;
       const fine = await this.twin.attempt(async () => {
-        const [grids, present] = await Promise.all([Promise.all(names.map((s) => this.layerOf(s, name, time))), this.presentFor(name, names, time)]);
-        names.forEach((s, i) => this.grids.set(s, grids[i]));
+        const [grids, present, others] = await Promise.all([Promise.all(names.map((s) => this.layerOf(s, name, time))), this.presentFor(name, names, time),
+          Promise.all(names.map((s) => this.counterpartOf(s, name, time)))]);
+        this.grids.clear();
+        names.forEach((s, i) => {
+          const grid = grids[i];
+          if (grid) this.grids.set(s, grid);
+        });
         this.shown_s.value = time;
-        if (this.twin.layer.value === name) this.show(name, present);
+        if (this.twin.layer.value === name) this.show(name, present, others.filter((grid) => grid !== null));
       });
       if (!fine) break;
     } while (this.again);
     this.busy = false;
   }
-  private async layerOf(scenario: ScenarioName, name: LayerName, time: number | null = null): Promise<Grid> {
-    return inUnit(name, await this.twin.api.layer(scenario, name, time));
+  /** null: the depth-averaged model has no result. */
+  private async layerOf(scenario: ScenarioName, name: RunLayer, time: number | null = null): Promise<Grid | null> {
+    return isDepthAveragedLayer(name) ? this.otherModel.of(scenario, quantityOf(name), time) : inUnit(name, await this.twin.api.layer(scenario, name, time));
+  }
+  /** The same quantity of the other model, once there is a result of both: both have one scale. */
+  private async counterpartOf(scenario: ScenarioName, name: RunLayer, time: number | null): Promise<Grid | null> {
+    if (!this.otherModel.has(scenario)) return null;
+    return isDepthAveragedLayer(name) ? this.layerOf(scenario, quantityOf(name), time) : this.otherModel.of(scenario, name, time);
+  }
+  /** A map of a setup that is no more goes at once. */
+  private forgetStale(): void {
+    if (!isDepthAveragedLayer(this.twin.layer.value)) return;
+    for (const s of scenarioNames) {
+      if (this.otherModel.has(s)) continue;
+      this.grids.delete(s);
+      this.difference = null;
+    }
+    this.put();
   }
   /** A map of an ensemble lies on every scenario's ground, at any time. */
   private async loadMap(name: EnsembleLayer): Promise<void> {
@@ -114,25 +144,26 @@ export class ShownLayers {
     this.lay(name, this.grids);
   }
   /** In the recording, colours remain those of the current time, so that maps of different times can be compared. */
-  private async presentFor(name: LayerName, names: readonly ScenarioName[], time: number | null): Promise<readonly Grid[] | null> {
+  private async presentFor(name: RunLayer, names: readonly ScenarioName[], time: number | null): Promise<readonly Grid[] | null> {
     if (time === null) {
       this.ofNow = null;
       return null;
     }
     const key = `${name} ${names.join()}`;
-    if (this.ofNow?.key !== key) this.ofNow = { key, grids: await Promise.all(names.map((s) => this.layerOf(s, name))) };
+    if (this.ofNow?.key !== key) this.ofNow = { key, grids: (await Promise.all(names.map((s) => this.layerOf(s, name)))).filter((grid) => grid !== null) };
     return this.ofNow.grids;
   }
-  private show(name: LayerName, present: readonly Grid[] | null): void {
+  private show(name: RunLayer, present: readonly Grid[] | null, others: readonly Grid[]): void {
     const { twin } = this;
     const [a, b] = twin.shown.value.map((s) => this.grids.get(s));
-    if (!a) return;
     const all = new Map<ScenarioName, Grid>();
     this.difference = null;
-    if (this.isDifference && b) {
-      const difference = differenceOf(name, a, b);
+    const quantity = quantityOf(name);
+    if (this.isDifference && !(a && b)) this.grids.clear();  // of one alone there is no difference
+    if (this.isDifference && a && b) {
+      const difference = differenceOf(quantity, a, b);
       this.difference = difference;
-      const ends = present && present.length > 1 ? differenceOf(name, present[0], present[1]) : difference;
+      const ends = present && present.length > 1 ? differenceOf(quantity, present[0], present[1]) : difference;
       const end = scaleEnd(ends.values.map(Math.abs));
       this.range.value = [-end, end];
       // Both views show it, so that it can be compared with either flow.
@@ -142,12 +173,12 @@ export class ShownLayers {
       for (const s of twin.shown.value) {
         const grid = this.grids.get(s);
         if (!grid) continue;
-        const values = shownValues(name, grid);
+        const values = shownValues(quantity, grid);
         all.set(s, { ...grid, values });
         end = Math.max(end, scaleEnd(values));
       }
-      if (present) end = Math.max(...present.map((grid) => scaleEnd(shownValues(name, grid))));
-      this.range.value = [0, end];
+      if (present) end = Math.max(...present.map((grid) => scaleEnd(shownValues(quantity, grid))));
+      this.range.value = [0, Math.max(end, ...others.map((grid) => scaleEnd(shownValues(quantity, grid))))];
     }
     this.lay(name, all);
   }
@@ -160,7 +191,7 @@ export class ShownLayers {
       this.held.set(s, draped.texture);
       view.ground.showLayer(draped, this.rampFor(name), [...this.range.value] as [number, number], this.twin.layerOpacity.value);
     }
-    this.stage.invalidate();
+    this.put();
   }
   private put(): void {
     for (const view of this.stage.views.values()) {

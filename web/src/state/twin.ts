@@ -2,7 +2,7 @@
 import { Api, Refused } from "../protocol/api";
 import { scenarioNames, type Frame, type ScenarioName } from "../protocol/frame";
 import { Live, type Connection } from "../protocol/live";
-import type { Action, CalibrationStatus, Done, Ensemble, Impacts, Person, Place, Point, ProbeSeries, SceneInfo, Series, ServerMessage, Session, Setup, ShownLayer, State, You } from "../protocol/messages";
+import type { Action, CalibrationStatus, DepthAveragedStatus, Done, Ensemble, Impacts, Person, Place, Point, ProbeSeries, SceneInfo, Series, ServerMessage, Session, Setup, ShownLayer, State, You } from "../protocol/messages";
 import { usualMoment, type Moment } from "../scene/natural/sun";
 import type { StartPage } from "../protocol/start";
 import type { Relief } from "../scene/relief";
@@ -18,6 +18,8 @@ export interface ScenarioCells {
   setup: Cell<Setup | null>;
   series: Cell<Series | null>;
   impacts: Cell<Impacts | null>;
+  /** Of the depth-averaged model of its setup; null, or off: not computed. */
+  depthAveraged: Cell<DepthAveragedStatus | null>;
 }
 
 export type Shape = "release" | "barrier" | "building" | "zone" | "bed" | "inflow";
@@ -255,6 +257,7 @@ export class Twin {
         this.api.secret = this.live.secret = message.you.secret;
         this.controller.value = message.session.controller;
         this.people.value = message.session.people;
+        for (const cell of this.every("depthAveraged")) cell.value = null;  // those that there are come next
         this.setScenarios(message.session.scenarios);
         this.askForFrames();
         void this.attempt(async () => {
@@ -275,6 +278,9 @@ export class Twin {
         break;
       case "calibration":
         this.calibration.value = message;
+        break;
+      case "depth_averaged":
+        this.cells[message.scenario].depthAveraged.value = message;
         break;
       case "scenarios":
         this.setScenarios(message.scenarios);
@@ -304,5 +310,6 @@ export class Twin {
 }
 
 function emptyCells(): ScenarioCells {
-  return { state: new Cell<State | null>(null), setup: new Cell<Setup | null>(null), series: new Cell<Series | null>(null), impacts: new Cell<Impacts | null>(null) };
+  return { state: new Cell<State | null>(null), setup: new Cell<Setup | null>(null), series: new Cell<Series | null>(null), impacts: new Cell<Impacts | null>(null),
+    depthAveraged: new Cell<DepthAveragedStatus | null>(null) };
 }

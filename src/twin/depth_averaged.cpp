@@ -1,0 +1,180 @@
+#include "twin/depth_averaged.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <cmath>
+#include <ctime>
+#include <limits>
+#include <utility>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "core/hash.hpp"
+#include "core/number_or_null.hpp"
+#include "core/try.hpp"
+#include "run/run_scene.hpp"
+#include "scene/grid_cell.hpp"
+#include "twin/json_keys.hpp"
+
+namespace talus::twin {
+namespace {
+
+using nlohmann::json;
+
+constexpr std::array map_names{"depth", "peak_depth", "peak_speed", "peak_pressure", "arrival_time", "deposit_depth"};
+constexpr double most_moments = 150, shortest_interval = 0.5;  // s
+
+/// Of this thread, s: a run has one.
+double processor_time() {
+    timespec now{};
+    clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
+    return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
+}
+
+double cells_of(const scene::Scene& scene, double cell) {
+    const Extent e = scene.terrain.elevation().geometry.extent();
+    return e.width() * e.height() / (cell * cell);
+}
+
+std::string sentence(std::string note) {
+    if (note.empty()) return note;
+    note[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(note[0])));
+    return note + ".";
+}
+
+/// Keeps depths over time within a number of bytes.
+class Moments {
+  public:
+    explicit Moments(std::size_t most_bytes) : most_bytes_(most_bytes) {}
+
+    void add(const run::Frame& frame) {
+        if (count_++ % every_ != 0) return;
+        kept_.push_back({frame.time, frame.debris.depth});
+        bytes_ += kept_.back().depth.values.size() * sizeof(float);
+        while (bytes_ > most_bytes_ && kept_.size() > 2) thin();
+    }
+    [[nodiscard]] std::vector<DepthAveragedRun::Moment> take() { return std::move(kept_); }
+
+  private:
+    void thin() {
+        every_ *= 2;
+        std::vector<DepthAveragedRun::Moment> some;
+        bytes_ = 0;
+        for (std::size_t k = 0; k < kept_.size(); k += 2) {
+            bytes_ += kept_[k].depth.values.size() * sizeof(float);
+            some.push_back(std::move(kept_[k]));
+        }
+        kept_ = std::move(some);
+    }
+
+    std::size_t most_bytes_, bytes_ = 0;
+    std::size_t count_ = 0, every_ = 1;
+    std::vector<DepthAveragedRun::Moment> kept_;
+};
+
+Grid<float> known_only(Grid<float> depth) {
+    for (float& value : depth.values) {
+        if (!(value > 0)) value = std::numeric_limits<float>::quiet_NaN();
+    }
+    return depth;
+}
+
+}  // namespace
+
+json DepthAveragedRun::to_json() const {
+    json front = {
+        {"chainage_m", json::array()}, {"arrival_time_s", json::array()}, {"front_velocity_mps", json::array()}};
+    for (const observe::FrontSample& sample : result.observation.front) {
+        front["chainage_m"].push_back(sample.chainage);
+        front["arrival_time_s"].push_back(number_or_null<json>(sample.arrival_time));
+        front["front_velocity_mps"].push_back(number_or_null<json>(sample.front_velocity));
+    }
+    return {{"end_s", result.simulated_time},
+            {"complete", result.status == run::RunStatus::complete},
+            {"stop_reason", result.stop_reason},
+            {"wall_time_s", result.wall_time},
+            {"processor_time_s", processor_time},
+            {"grid_cell_m", result.grid_cell},
+            {"hash", to_hex(result.hash)},
+            {"notes", notes},
+            {"front", front}};
+}
+
+Result<Grid<float>> DepthAveragedRun::layer(const std::string& name, std::optional<double> time) const {
+    if (std::find(map_names.begin(), map_names.end(), name) == map_names.end()) {
+        return Error{fmt::format("layer = {}: must be one of {}", shown(json(name)), fmt::join(map_names, ", "))};
+    }
+    const observe::HazardMaps& maps = result.observation.maps;
+    if (name == "depth") {
+        if (!time) return known_only(maps.deposit_depth);
+        auto after =
+            std::find_if(moments.begin(), moments.end(), [&](const Moment& m) { return m.time > *time + 1e-6; });
+        if (after != moments.begin()) --after;
+        return known_only(after->depth);
+    }
+    if (name == "peak_depth") return maps.peak_depth;
+    if (name == "peak_speed") return maps.peak_speed;
+    if (name == "peak_pressure") return maps.peak_pressure;
+    if (name == "deposit_depth") return maps.deposit_depth;
+    Grid<float> arrival = maps.arrival_time;
+    for (float& value : arrival.values) {
+        if (time && value > *time) value = std::numeric_limits<float>::quiet_NaN();
+    }
+    return arrival;
+}
+
+Result<scene::Scene> for_depth_averaged(scene::Scene scene, const DepthAveragedLimits& limits) {
+    if (const auto lacking = scene::depth_averaged_lacks(scene)) {
+        return Error{fmt::format("The depth-averaged model {}.", lacking->why)};
+    }
+    params::SolverSpec& solver = scene.spec.solver;
+    solver.model = params::ModelChoice::depth_averaged;
+    solver.thread_count = 1;
+    const double cell = scene::grid_cell(scene);
+    double coarse = cell;
+    while (cells_of(scene, coarse) > limits.most_cells) coarse *= 2;
+    solver.grid_cell = coarse;
+    scene.notes = scene::depth_averaged_notes(scene);
+    if (coarse > cell) {
+        scene.notes.push_back(fmt::format(
+            "cells of {:.4g} m in place of {:.4g} m, which talus run has: this terrain is large", coarse, cell));
+    }
+    for (const terrain::Release& release : scene.releases) {
+        if (std::isfinite(release.spec.start_time)) continue;
+        scene.notes.push_back(fmt::format("release \"{}\" waits to be started, so it takes no part", release.name));
+    }
+    scene.spec.outputs.series_interval = std::max(shortest_interval, solver.end_time / most_moments);
+    // Chainages are along the scene's path, as those of the live run.
+    scene.flow_path_origin = scene::PathOrigin::file;
+    return scene;
+}
+
+Result<DepthAveragedRun> run_depth_averaged(const scene::Scene& scene, const std::atomic<bool>& stop,
+                                            const std::function<void(double share)>& progress,
+                                            const DepthAveragedLimits& limits) {
+    const double begun = processor_time();
+    std::atomic<bool> end = false;
+    Moments moments(limits.depth_bytes);
+    run::RunOptions options;
+    options.stop_requested = &end;
+    options.on_frame = [&](const run::Frame& frame) { moments.add(frame); };
+    options.on_grid_step = [&](const depth::Solver& solver) {
+        end = stop || processor_time() - begun > limits.longest;
+        if (progress) progress(solver.time() / scene.spec.solver.end_time);
+    };
+    DepthAveragedRun run;
+    TALUS_ASSIGN(run.result, run::run_scene(scene, options));
+    run.moments = moments.take();
+    for (const std::string& note : scene.notes) run.notes.push_back(sentence(note));
+    run.processor_time = processor_time() - begun;
+    if (run.result.status == run::RunStatus::interrupted && !stop) {
+        run.result.stop_reason = fmt::format(
+            "ended after {:.0f} s of computing, the most that it may take beside a live run, at t = {:.4g} s",
+            limits.longest, run.result.simulated_time);
+    }
+    return run;
+}
+
+}  // namespace talus::twin

@@ -1,0 +1,59 @@
+#pragma once
+
+#include <atomic>
+#include <cstddef>
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <nlohmann/json.hpp>
+
+#include "core/grid.hpp"
+#include "core/result.hpp"
+#include "run/run_result.hpp"
+#include "scene/scene.hpp"
+
+/// The depth-averaged model beside a live run: a view of its setup. Nothing of it enters the run, its journal or its
+/// hash.
+namespace talus::twin {
+
+/// What a run of it may cost beside a live run.
+struct DepthAveragedLimits {
+    double most_cells = 4e6;               ///< of its grid; a scene that has more gets coarser cells
+    double longest = 300;                  ///< s of processor time, after which it ends as it is
+    std::size_t depth_bytes = 64'000'000;  ///< of the depths over time; when full, every second one is removed
+};
+
+/// A run of a setup from time 0, by this model.
+struct DepthAveragedRun {
+    /// Depths at one moment.
+    struct Moment {
+        double time = 0;    ///< s
+        Grid<float> depth;  ///< m, over the part of the grid that has debris; 0 where there is none
+    };
+
+    run::RunResult result;
+    std::vector<Moment> moments;     ///< in order of time
+    std::vector<std::string> notes;  ///< sentences on what the model leaves out
+    double processor_time = 0;       ///< s
+
+    /// As "result" of docs/protocol.md.
+    [[nodiscard]] nlohmann::json to_json() const;
+    /// `depth`, `peak_depth`, `peak_speed`, `peak_pressure`, `arrival_time`, `deposit_depth` on its own cells; NaN: no
+    /// value. SI units. Depth at a time, s, or at the end; arrivals until a time; the others are of the whole run.
+    /// Error: no such layer.
+    [[nodiscard]] Result<Grid<float>> layer(const std::string& name, std::optional<double> time = {}) const;
+};
+
+/// A scene as this model runs it beside a live run, on one thread. Errors: a sentence that names what the model does
+/// not have.
+[[nodiscard]] Result<scene::Scene> for_depth_averaged(scene::Scene scene, const DepthAveragedLimits& limits = {});
+
+/// Runs a scene of for_depth_averaged(), until `stop` or to its end. `progress` is called after every step with the
+/// share of the time that has passed. Errors: as of run::run_scene().
+[[nodiscard]] Result<DepthAveragedRun> run_depth_averaged(const scene::Scene& scene, const std::atomic<bool>& stop,
+                                                          const std::function<void(double share)>& progress = {},
+                                                          const DepthAveragedLimits& limits = {});
+
+}  // namespace talus::twin

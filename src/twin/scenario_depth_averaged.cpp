@@ -1,0 +1,157 @@
+// A scenario beside the depth-averaged model of its setup.
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "core/number_or_null.hpp"
+#include "report/number_text.hpp"
+#include "run/second_opinion.hpp"
+#include "twin/depth_averaged.hpp"
+#include "twin/scenario_parts.hpp"
+#include "twin/setup_file.hpp"
+
+namespace talus::twin {
+namespace {
+
+using nlohmann::json;
+
+/// What of a run had happened by a time, s.
+observe::Observation until(observe::Observation whole, double time) {
+    std::vector<observe::FrontSample>& front = whole.front;
+    std::erase_if(front, [&](const observe::FrontSample& sample) { return !(sample.arrival_time <= time); });
+    whole.run_out = {};
+    for (const observe::FrontSample& sample : front) whole.run_out.front_chainage = sample.chainage;
+    const observe::HazardMaps& maps = whole.maps;
+    for (std::size_t k = 0; k < maps.peak_depth.values.size(); ++k) {
+        if (!(maps.arrival_time.values[k] <= time)) {
+            whole.maps.peak_depth.values[k] = std::numeric_limits<float>::quiet_NaN();
+        }
+    }
+    return whole;
+}
+
+json agreement_json(const run::AreaAgreement& area) {
+    return {{"both_m2", area.both},
+            {"particles_only_m2", area.only_first},
+            {"depth_averaged_only_m2", area.only_second},
+            {"intersection_over_union", number_or_null<json>(area.intersection_over_union())}};
+}
+
+/// The rows of a comparison.
+class Rows {
+  public:
+    Rows(const observe::Observation& particles, const observe::Observation& then, const observe::Observation& whole)
+        : particles_(particles), then_(then), whole_(whole) {}
+
+    template <class Value>
+    json& add(const std::string& key, const std::string& name, const char* unit, int decimals, const Value& value) {
+        return add(key, name, unit, decimals, value(particles_), value(then_), value(whole_));
+    }
+    json& add(const std::string& key, const std::string& name, const char* unit, int decimals, double particles,
+              double then, double whole) {
+        rows_.push_back({{"key", key},
+                         {"name", name},
+                         {"unit", unit},
+                         {"decimals", decimals},
+                         {"particles", number_or_null<json>(particles)},
+                         {"depth_averaged_by_then", number_or_null<json>(then)},
+                         {"depth_averaged", number_or_null<json>(whole)},
+                         {"observed", nullptr}});
+        return rows_.back();
+    }
+    [[nodiscard]] json take() { return std::move(rows_); }
+
+  private:
+    const observe::Observation &particles_, &then_, &whole_;
+    json rows_ = json::array();
+};
+
+json compared(const scene::Scene& scene, const run::RunResult& particles, const run::RunResult& whole, bool over) {
+    run::RunResult then = whole;
+    if (!over) then.observation = until(std::move(then.observation), particles.simulated_time);
+    const run::AreaAgreement now = second_opinion(scene, particles, then).area;
+    const run::AreaAgreement at_end = over ? now : second_opinion(scene, particles, whole).area;
+
+    Rows rows(particles.observation, then.observation, whole.observation);
+    std::vector<double> told;
+    for (const params::ObservationSpec& observed : scene.spec.observations) {
+        if (std::find(told.begin(), told.end(), observed.chainage) != told.end()) continue;
+        told.push_back(observed.chainage);
+        const std::string at = fmt::format(" at {} m", report::plain(observed.chainage));
+        rows.add("front_velocity", "Front velocity" + at, "m/s", 1, [&](const auto& o) {
+            return front_at(o, observed.chainage).front_velocity;
+        })["observed"] = observed.front_velocity;
+        rows.add("front_arrival", "Front arrival" + at, "s", 1,
+                 [&](const auto& o) { return front_at(o, observed.chainage).arrival_time; });
+    }
+    rows.add("front_chainage", "Front to chainage", "m", 0, [](const auto& o) { return o.run_out.front_chainage; });
+    rows.add("run_out", "Run-out along the flow", "m", 0, [](const auto& o) { return o.run_out.along_flow; });
+    rows.add("affected_area", "Affected area", "m2", 0, now.both + now.only_first, now.both + now.only_second,
+             at_end.both + at_end.only_second);
+    return {{"time_s", particles.simulated_time},
+            {"over", over},
+            {"rows", rows.take()},
+            {"least_depth_m", scene.spec.outputs.arrival_depth},
+            {"area", agreement_json(now)}};
+}
+
+}  // namespace
+
+std::string Scenario::setup_key() const {
+    json key = write_setup(parts_->setup());
+    key["starts"] = json::array();
+    for (const ReleaseSetup& release : parts_->setup().releases) {
+        key["starts"].push_back(number_or_null<json>(parts_->run->start_time_of(release.id)));
+    }
+    return key.dump();
+}
+
+std::function<Result<scene::Scene>()> Scenario::for_depth_averaged() const {
+    std::vector<double> starts;
+    for (const ReleaseSetup& release : parts_->setup().releases)
+        starts.push_back(parts_->run->start_time_of(release.id));
+    return [scene = parts_->scene, setup = parts_->setup(), starts = std::move(starts)]() -> Result<scene::Scene> {
+        scene::Scene now = scene_of(*scene, setup);
+        for (std::size_t k = 0; k < starts.size(); ++k) now.releases[k].spec.start_time = starts[k];
+        // What was changed here counts as given, so that what the model has no use for is named.
+        for (const params::Parameter* parameter : live_parameters()) {
+            params::SceneSpec before, after;
+            before.material = scene->spec.material;
+            after.material = setup.material;
+            const bool changed =
+                params::plain_text(parameter->get(before, 0)) != params::plain_text(parameter->get(after, 0));
+            if (changed) now.given_keys.insert("material." + parameter->key);
+        }
+        return twin::for_depth_averaged(std::move(now));
+    };
+}
+
+std::function<json()> Scenario::compared_with(std::shared_ptr<const DepthAveragedRun> other) const {
+    const LiveRun& run = *parts_->run;
+    run::RunResult particles = run.result();
+    // Along the scene's path, as those of the other model: a result may have followed the debris.
+    particles.observation.front = run.observer().front();
+    particles.observation.run_out.front_chainage = run.observer().front_chainage();
+    const bool over = phase() == run::RunPhase::at_rest || phase() == run::RunPhase::ended;
+    std::vector<std::string> differs;
+    if (!parts_->changes.empty()) {
+        differs.emplace_back(
+            "The particles' setup was changed on the way; the depth-averaged model has the present one from its "
+            "start.");
+    }
+    if (!begin_alike(parts_->setup(), run.begun_with())) {
+        differs.emplace_back(
+            "Beds or inflows were changed: the depth-averaged model has them already, the particles after a restart.");
+    }
+    return [scene = parts_->scene, particles = std::move(particles), other = std::move(other), over,
+            differs = std::move(differs)] {
+        json all = compared(*scene, particles, other->result, over);
+        all["differs"] = differs;
+        return all;
+    };
+}
+
+}  // namespace talus::twin
