@@ -9,7 +9,6 @@
 namespace talus::run {
 namespace {
 
-constexpr double interval = BoundaryFlow::interval;
 constexpr double finest_piece = 2;        // m, of the boundary
 constexpr int spacings_of_piece = 8;      // at least, of an inflow
 constexpr double part_of_volume = 0.999;  // of a piece; the rest trickles in for minutes and comes with it
@@ -39,16 +38,17 @@ std::optional<CellIndex> cell_at(const GridGeometry& g, const PlanPoint& p) {
 /// Rows of a hydrograph in the middles of intervals, whose integral over time is `volume`.
 std::vector<params::InflowSample> hydrograph_of(const std::vector<params::InflowSample>& flow, double volume) {
     double sum = 0;
-    for (const params::InflowSample& row : flow) sum += row.discharge * interval;
+    for (const params::InflowSample& row : flow) sum += row.discharge * BoundaryFlow::interval;
     std::vector<params::InflowSample> rows;
     double before = 0;
     for (std::size_t k = 0; k < flow.size() && before <= part_of_volume * sum; ++k) {
-        before += flow[k].discharge * interval;
+        before += flow[k].discharge * BoundaryFlow::interval;
         if (rows.empty() && flow[k].discharge <= 0) continue;
-        if (rows.empty()) rows.push_back({std::max(0.0, flow[k].time - interval), 0, flow[k].velocity, 0});
+        if (rows.empty())
+            rows.push_back({std::max(0.0, flow[k].time - BoundaryFlow::interval), 0, flow[k].velocity, 0});
         rows.push_back(flow[k]);
     }
-    rows.push_back({rows.back().time + interval, 0, rows.back().velocity, 0});
+    rows.push_back({rows.back().time + BoundaryFlow::interval, 0, rows.back().velocity, 0});
     terrain::Inflow whole;
     whole.hydrograph = rows;
     const double scale = volume / whole.volume();
@@ -114,7 +114,7 @@ double BoundaryFlow::volume_inside(const depth::Solver& solver) const {
 
 void BoundaryFlow::record(const depth::Solver& solver) {
     const double step = solver.time_step();
-    const auto at = static_cast<std::size_t>(std::max(0.0, solver.time() - step / 2) / interval);
+    const auto at = static_cast<std::size_t>(std::max(0.0, solver.time() - step / 2) / BoundaryFlow::interval);
     for (Piece& piece : pieces_) {
         constexpr int samples = 4;
         for (int k = 0; k < samples; ++k) {
@@ -152,7 +152,7 @@ void BoundaryFlow::bring(const PlanPoint& place, double time, double volume, dou
     };
     Piece& piece = *std::min_element(pieces_.begin(), pieces_.end(),
                                      [&](const Piece& a, const Piece& b) { return distance(a) < distance(b); });
-    const auto at = static_cast<std::size_t>(std::max(0.0, time) / interval);
+    const auto at = static_cast<std::size_t>(std::max(0.0, time) / BoundaryFlow::interval);
     if (piece.intervals.size() <= at) piece.intervals.resize(at + 1);
     piece.intervals[at].volume += volume;
     piece.intervals[at].momentum_x += volume * u;
@@ -168,7 +168,7 @@ BoundaryFlow::Volumes BoundaryFlow::volumes() const {
 
 std::vector<double> BoundaryFlow::discharge() const {
     std::vector<double> all;
-    const double scale = in_ > 0 ? volumes().in / in_ / interval : 0;
+    const double scale = in_ > 0 ? volumes().in / in_ / BoundaryFlow::interval : 0;
     for (const Piece& piece : pieces_) {
         if (all.size() < piece.intervals.size()) all.resize(piece.intervals.size());
         for (std::size_t k = 0; k < piece.intervals.size(); ++k) all[k] += piece.intervals[k].volume * scale;
@@ -255,7 +255,8 @@ std::vector<terrain::Inflow> BoundaryFlow::inflows(double particle_spacing) cons
         for (const Interval& one : piece.intervals) {
             const double along = one.momentum_x * towards.x + one.momentum_y * towards.y;
             if (one.volume > 0) velocity = std::max(0.0, along / one.volume) * std::sqrt(1 + rise * rise);
-            flow.push_back({(static_cast<double>(flow.size()) + 0.5) * interval, one.volume / interval, velocity, 0});
+            flow.push_back({(static_cast<double>(flow.size()) + 0.5) * BoundaryFlow::interval,
+                            one.volume / BoundaryFlow::interval, velocity, 0});
         }
         terrain::Inflow inflow;
         inflow.name = fmt::format("boundary of the zoom {}", inflows.size() + 1);
