@@ -19,7 +19,8 @@ Result<Polygon> area_around(const std::string& at, const Scene& scene) {
     for (const terrain::Building& building : scene.buildings) {
         if (building.name == spec.structure) {
             Extent e = extent_of(building).grown(spec.margin);
-            const Extent known = covered_extent(scene.terrain);  // nothing comes from beyond its edge
+            // Nothing comes from beyond the terrain; a hundredth of a cell is for rounding.
+            const Extent known = covered_extent(scene.terrain).grown(-0.01 * scene.terrain.cell());
             e = {std::max(e.x_min, known.x_min), std::max(e.y_min, known.y_min), std::min(e.x_max, known.x_max),
                  std::min(e.y_max, known.y_max)};
             return Polygon{{{e.x_min, e.y_min}, {e.x_max, e.y_min}, {e.x_max, e.y_max}, {e.x_min, e.y_max}}, {}};
