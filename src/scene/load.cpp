@@ -161,7 +161,9 @@ Result<Scene> assemble_scene(const ParsedScene& parsed) {
     TALUS_TRY(load_bed(parsed, scene));
     TALUS_TRY(load_inflows(parsed, scene));
     TALUS_TRY(settle_layers(parsed, scene));
-    if (const auto broken = too_viscous(scene.spec.material, scene.spec.solver, particle_spacing(scene))) {
+    const bool particles = scene.spec.solver.model == params::ModelChoice::particles;
+    const auto broken = too_viscous(scene.spec.material, scene.spec.solver, particle_spacing(scene));
+    if (broken && particles) {
         return Error{parsed.at("material." + broken->key) + broken->text};
     }
     TALUS_TRY(load_buildings(parsed, scene));
@@ -170,7 +172,6 @@ Result<Scene> assemble_scene(const ParsedScene& parsed) {
     TALUS_TRY(load_observations(parsed, scene));
     TALUS_TRY(load_gauges(parsed, scene));
     TALUS_TRY(load_zoom(parsed, scene));
-    const bool particles = scene.spec.solver.model == params::ModelChoice::particles;
     TALUS_TRY(particles ? check_limits(parsed, scene) : check_depth_averaged(parsed, scene));
     note_implausible_terrain(scene);
     if (particles) note_coarse_particles(scene);

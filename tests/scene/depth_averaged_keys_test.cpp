@@ -43,6 +43,9 @@ std::string another_value(const params::Section& section, const params::Paramete
         case params::ParameterKind::integer:
             return params::plain_text(usual) == "3" ? "4" : "3";
         case params::ParameterKind::number: {
+            if (const double* number = std::get_if<double>(&usual); number != nullptr && *number > 0) {
+                return fmt::format("{}", 0.9 * *number);
+            }
             const double high = std::min(parameter.range.high, 4.0), low = std::max(parameter.range.low, 0.0);
             return fmt::format("{}", low + 0.437 * (high - low));
         }
