@@ -130,7 +130,8 @@ TEST_F(ZoomedRun, brings_what_crosses_the_boundary_to_the_structure) {
     ASSERT_TRUE(result->zoom);
     const ZoomRecord& zoom = *result->zoom;
     EXPECT_EQ(zoom.volumes.out, 0) << "the dam holds all";
-    EXPECT_NEAR(result->observation.volume_released, zoom.volumes.in, 0.51);
+    EXPECT_NEAR(result->observation.volume_released, zoom.volumes.in, 0.005 * zoom.volumes.in)
+        << "but for the last row";
     EXPECT_NEAR(zoom.brought_volume, zoom.volumes.in, 0.51);
     const double momentum = std::hypot(zoom.momentum.x, zoom.momentum.y);
     EXPECT_GT(momentum, 0);
