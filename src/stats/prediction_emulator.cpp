@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 #include <numbers>
+#include <utility>
 
 namespace talus::stats {
 
@@ -13,6 +15,16 @@ constexpr double label_doubt = 0.5;  // standard deviation half way between the 
 }  // namespace
 
 PredictionEmulator PredictionEmulator::fit(const Points& points, const std::vector<double>& values, double unreached) {
+    return fit(nullptr, points, values, unreached);
+}
+
+PredictionEmulator PredictionEmulator::fit_beside(const PredictionEmulator& fast, const Points& points,
+                                                  const std::vector<double>& values) {
+    return fit(&fast, points, values, fast.unreached_);
+}
+
+PredictionEmulator PredictionEmulator::fit(const PredictionEmulator* fast, const Points& points,
+                                           const std::vector<double>& values, double unreached) {
     PredictionEmulator made;
     made.unreached_ = unreached;
     Points reached;
@@ -23,8 +35,17 @@ PredictionEmulator PredictionEmulator::fit(const Points& points, const std::vect
         reached.push_back(points[i]);
         given.push_back(values[i]);
     }
-    if (!reached.empty()) made.value_ = Emulator::fit(std::move(reached), given);
-    if (!given.empty() && given.size() < points.size()) made.reach_ = Emulator::fit(points, labels);
+    const auto emulate = [&](const std::optional<Emulator> PredictionEmulator::*part, Points at,
+                             const std::vector<double>& of) {
+        if (fast == nullptr || !(fast->*part)) return Emulator::fit(std::move(at), of);
+        return Emulator::fit_beside(std::make_shared<const Emulator>(*(fast->*part)), std::move(at), of);
+    };
+    const bool fast_reaches = fast != nullptr && fast->value_;
+    if (!given.empty() || fast_reaches) {
+        made.value_ = emulate(&PredictionEmulator::value_, std::move(reached), given);
+        const bool unsure = given.size() < points.size() || (fast != nullptr && fast->reach_);
+        if (unsure) made.reach_ = emulate(&PredictionEmulator::reach_, points, labels);
+    }
     return made;
 }
 

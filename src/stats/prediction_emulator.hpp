@@ -20,6 +20,9 @@ class PredictionEmulator {
     /// `values`: one per point, NaN where the run gives none; `unreached` replaces those.
     [[nodiscard]] static PredictionEmulator fit(const Points& points, const std::vector<double>& values,
                                                 double unreached);
+    /// The same, with the emulator of a faster model's predictions, as Emulator::fit_beside; points may be none.
+    [[nodiscard]] static PredictionEmulator fit_beside(const PredictionEmulator& fast, const Points& points,
+                                                       const std::vector<double>& values);
 
     [[nodiscard]] Estimate at(const std::vector<double>& point) const;
     /// Mean of the value, if there is one.
@@ -36,6 +39,8 @@ class PredictionEmulator {
 
   private:
     PredictionEmulator() = default;
+    [[nodiscard]] static PredictionEmulator fit(const PredictionEmulator* fast, const Points& points,
+                                                const std::vector<double>& values, double unreached);
     std::optional<Emulator> value_;
     std::optional<Emulator> reach_;  // of 1 and -1; none where all or no runs give a value
     double unreached_ = 0;

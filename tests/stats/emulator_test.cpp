@@ -1,6 +1,8 @@
 #include "stats/emulator.hpp"
 
 #include <cmath>
+#include <cstdint>
+#include <memory>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -114,6 +116,147 @@ TEST(Emulator, TakesValuesThatAreAllTheSame) {
     const Emulator emulator = Emulator::fit(points, std::vector<double>(12, 7.0));
     EXPECT_NEAR(emulator.mean_at({0.5, 0.5}), 7, 1e-6);
     EXPECT_LT(std::sqrt(emulator.at({0.5, 0.5}).variance), 0.1);
+}
+
+/// The pair of Forrester, Sobester & Keane (2007, "Multi-fidelity optimization via surrogate modelling", Proceedings of
+/// the Royal Society A 463, section 3): the fast one is half the slow one plus a line.
+double forrester(const std::vector<double>& p) {
+    const double x = p[0];
+    return (6 * x - 2) * (6 * x - 2) * std::sin(12 * x - 4);
+}
+
+double fast_forrester(const std::vector<double>& p) {
+    return 0.5 * forrester(p) + 10 * (p[0] - 0.5) - 5;
+}
+
+using Function = double (*)(const std::vector<double>&);
+
+std::vector<double> all_of(Function function, const Points& points) {
+    std::vector<double> values;
+    for (const auto& p : points) values.push_back(function(p));
+    return values;
+}
+
+std::shared_ptr<const Emulator> fast_emulator(Function function, const Points& points) {
+    return std::make_shared<const Emulator>(Emulator::fit(points, all_of(function, points)));
+}
+
+Points line(std::size_t count) {
+    Points points;
+    for (std::size_t i = 0; i < count; ++i) points.push_back({static_cast<double>(i) / static_cast<double>(count - 1)});
+    return points;
+}
+
+struct Errors {
+    double rms = 0;
+    double within = 0;  // share of places in the 95 % interval of the function
+};
+
+Errors errors_of(const Emulator& emulator, Function function, const Points& places) {
+    Errors errors;
+    for (const auto& p : places) {
+        const Emulator::Estimate e = emulator.at(p);
+        EXPECT_NEAR(e.mean, emulator.mean_at(p), 1e-6 * (1 + std::abs(e.mean)));
+        const double off = std::abs(e.mean - function(p)), n = static_cast<double>(places.size());
+        errors.rms += off * off / n;
+        errors.within += off <= 1.96 * std::sqrt(e.variance + e.noise) ? 1 / n : 0;
+    }
+    errors.rms = std::sqrt(errors.rms);
+    return errors;
+}
+
+TEST(TwoModels, FourSlowRunsBesideElevenFastOnesTellForrestersFunction) {
+    const Points slow = {{0}, {0.4}, {0.6}, {1}};  // those of the paper
+    const Emulator both = Emulator::fit_beside(fast_emulator(fast_forrester, line(11)), slow, all_of(forrester, slow));
+    EXPECT_GT(both.rho(), 1);
+    EXPECT_LT(both.rho(), 2.5);
+    const Errors two = errors_of(both, forrester, line(101));
+    const Errors alone = errors_of(Emulator::fit(slow, all_of(forrester, slow)), forrester, line(101));
+    EXPECT_LT(two.rms, 0.3 * alone.rms);
+    EXPECT_GE(two.within, 0.9);
+    // six tell the relation
+    const Emulator six =
+        Emulator::fit_beside(fast_emulator(fast_forrester, line(11)), line(6), all_of(forrester, line(6)));
+    EXPECT_NEAR(six.rho(), 2, 0.15);
+    EXPECT_LT(errors_of(six, forrester, line(101)).rms, 0.5);  // of values from -6 to 16
+}
+
+/// A slow model that is the fast one times 0.8, plus a gentle difference.
+double slow_wave(const std::vector<double>& p) {
+    return 0.8 * wave(p) + 3 * p[0] - 2 * p[0] * p[1];
+}
+
+TEST(TwoModels, TheIntervalsHoldTheSlowModelAsOftenAsTheySay) {
+    const Points places = sample_points(DesignKind::monte_carlo, 100, 2, 5);
+    double within = 0, rms = 0, alone = 0;
+    constexpr int designs = 10;
+    for (int seed = 1; seed <= designs; ++seed) {
+        const Points fast = sample_points(DesignKind::latin_hypercube, 40, 2, static_cast<std::uint64_t>(seed));
+        const Points slow(fast.begin(), fast.begin() + 8);
+        const std::vector<double> values = all_of(slow_wave, slow);
+        const Errors errors =
+            errors_of(Emulator::fit_beside(fast_emulator(wave, fast), slow, values), slow_wave, places);
+        within += errors.within / designs;
+        rms += errors.rms / designs;
+        alone += errors_of(Emulator::fit(slow, values), slow_wave, places).rms / designs;
+    }
+    EXPECT_GE(within, 0.9);
+    EXPECT_LT(rms, 0.3 * alone);
+}
+
+double unrelated(const std::vector<double>& p) {
+    return 5 * std::cos(9 * p[1]) + 4 * std::sin(7 * p[0] + 1);
+}
+
+TEST(TwoModels, AFastModelThatTellsNothingDoesLittleHarm) {
+    const Points places = sample_points(DesignKind::monte_carlo, 100, 2, 5);
+    double rms = 0, alone = 0, within = 0;
+    constexpr int designs = 6;
+    for (int seed = 1; seed <= designs; ++seed) {
+        const Points fast = sample_points(DesignKind::latin_hypercube, 50, 2, static_cast<std::uint64_t>(seed));
+        const Points slow(fast.begin(), fast.begin() + 20);
+        const std::vector<double> values = all_of(wave, slow);
+        const Emulator both = Emulator::fit_beside(fast_emulator(unrelated, fast), slow, values);
+        const Errors errors = errors_of(both, wave, places);
+        EXPECT_LT(std::abs(both.rho()), 0.3) << seed;
+        rms += errors.rms / designs;
+        within += errors.within / designs;
+        alone += errors_of(Emulator::fit(slow, values), wave, places).rms / designs;
+    }
+    EXPECT_LT(rms, 1.1 * alone);
+    EXPECT_GE(within, 0.9);
+}
+
+TEST(TwoModels, TheRunsNeedNotBeAtTheSamePlaces) {
+    const Points slow = sample_points(DesignKind::latin_hypercube, 8, 2, 17);
+    const Emulator both = Emulator::fit_beside(fast_emulator(wave, some_points(40)), slow, all_of(slow_wave, slow));
+    EXPECT_LT(errors_of(both, slow_wave, some_points(50)).rms, 0.5);
+}
+
+TEST(TwoModels, WithoutASlowRunItIsTheFastModelAndAsDoubtfulAsModelsUsuallyAre) {
+    const auto fast = fast_emulator(wave, some_points(40));
+    const Emulator both = Emulator::fit_beside(fast, {}, {});
+    const Emulator::Estimate e = both.at({0.3, 0.6});
+    EXPECT_NEAR(e.mean, fast->at({0.3, 0.6}).mean, 1e-9);
+    EXPECT_GT(e.variance, 100 * fast->at({0.3, 0.6}).variance);
+    // after one run it is known there
+    EXPECT_NEAR(both.with({0.3, 0.6}, 20).mean_at({0.3, 0.6}), 20, 0.2);
+}
+
+TEST(TwoModels, LeavesASlowRunOutAsIfItHadNotBeenRun) {
+    const auto fast = fast_emulator(wave, some_points(40));
+    Points slow = sample_points(DesignKind::latin_hypercube, 9, 2, 17);
+    std::vector<double> values = all_of(slow_wave, slow);
+    const std::vector<double> last = slow.back();
+    const double value = values.back();
+    slow.pop_back();
+    values.pop_back();
+    const Emulator others = Emulator::fit_beside(fast, slow, values);
+    const Emulator::Estimate expected = others.at(last);
+    const Emulator::LeftOut left_out = others.with(last, value).leave_one_out().back();
+    EXPECT_NEAR(left_out.computed, value, 1e-9);
+    EXPECT_NEAR(left_out.mean, expected.mean, 1e-5);
+    EXPECT_NEAR(left_out.deviation, std::sqrt(expected.variance + expected.noise), 1e-5);
 }
 
 }  // namespace
