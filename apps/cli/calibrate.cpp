@@ -27,7 +27,8 @@ struct CalibrateArguments {
     std::string scene;                 ///< a scene file; empty: the built-in scene
     std::string output;                ///< a folder; empty: talus_out/<scene name>_calibration
     std::vector<std::string> factors;  ///< "section.key=distribution"
-    std::optional<std::size_t> runs, design, checks;
+    std::string search_with;           ///< "depth_averaged"; empty: the scene's model alone
+    std::optional<std::size_t> runs, fast_runs, design, checks;
     std::optional<std::uint64_t> seed;
     std::optional<std::size_t> recover;  ///< number of attempts with known values
     std::vector<std::string> overrides;  ///< "section.key=value"
@@ -49,9 +50,13 @@ The folder holds report.html, the runs, intervals, draws from the posterior, the
 The same command resumes where an earlier one stopped. --recover 10 repeats the calibration ten times with observations
 from runs with known values, and counts how often these are recovered within the stated interval, which shows what such
 observations can identify (docs/calibration.md).
+--search-with depth_averaged searches with that faster model (100 runs, --fast-runs) and confirms with particles (10
+runs, --runs): emulators learn the difference between the models from the places where both ran.
 
 Exit codes: as talus run. A run that fails is excluded; 3: no run of the design was complete.
 )";
+
+constexpr std::size_t runs_beside_fast = 10, default_fast_runs = 100;
 
 Result<calibrate::CalibrationPlan> read_arguments(const CalibrateArguments& arguments) {
     ensemble::EnsemblePlan factors;
@@ -60,6 +65,15 @@ Result<calibrate::CalibrationPlan> read_arguments(const CalibrateArguments& argu
     }
     calibrate::CalibrationPlan plan;
     plan.factors = std::move(factors.factors);
+    if (!arguments.search_with.empty()) {
+        if (arguments.search_with != "depth_averaged") {
+            return Error{fmt::format("--search-with {} is refused; it must be depth_averaged", arguments.search_with)};
+        }
+        plan.search.runs = runs_beside_fast;
+        plan.search.fast_runs = arguments.fast_runs.value_or(default_fast_runs);
+    } else if (arguments.fast_runs) {
+        return Error{"--fast-runs is for --search-with depth_averaged, which is not given"};
+    }
     plan.search.runs = arguments.runs.value_or(plan.search.runs);
     plan.search.design = arguments.design.value_or(plan.search.design);
     plan.search.checks = arguments.checks.value_or(plan.search.checks);
@@ -129,12 +143,17 @@ int run_calibration(const CalibrateArguments& arguments, const calibrate::Calibr
 int calibrate_command(const CalibrateArguments& arguments) {
     if (!arguments.data.empty()) set_data_folder(arguments.data);
     InterruptWatch watch;
-    const Result<calibrate::CalibrationPlan> plan = read_arguments(arguments);
+    Result<calibrate::CalibrationPlan> plan = read_arguments(arguments);
     if (!plan) return fail(exit_code::bad_input, plan.error().message);
     const Result<SceneInput> input = open_scene(arguments.scene, arguments.overrides, arguments.layers, watch);
     if (!input) return fail(exit_code::bad_input, input.error().message);
     const Result<ensemble::PlannedRuns> runs = plan_calibration(*plan, input->source, input->scene);
     if (!runs) return fail(exit_code::bad_input, runs.error().message);
+    if (plan->search.fast_runs > 0) {
+        auto fast = plan_fast_model(*plan, input->source, input->scene);
+        if (!fast) return fail(exit_code::bad_input, fast.error().message);
+        plan->fast.emplace(*std::move(fast));
+    }
     const std::string ending = arguments.recover ? "_recovery" : "_calibration";
     const fs::path path =
         arguments.output.empty() ? fs::path("talus_out") / (input->short_name + ending) : fs::path(arguments.output);
@@ -164,7 +183,13 @@ void add_calibrate(CLI::App& program, std::vector<Command>& commands) {
     app->add_option("--vary", arguments->factors, "a free value with its range or prior; may be repeated")
         ->type_name("SECTION.KEY=DISTRIBUTION")
         ->allow_extra_args(false);
-    app->add_option("--runs", arguments->runs, "maximum number of runs; default: 100")->type_name("N");
+    app->add_option("--runs", arguments->runs, "maximum number of runs; default: 100, with --search-with 10")
+        ->type_name("N");
+    app->add_option("--search-with", arguments->search_with,
+                    "a faster model for most of the search; --runs are then those of particles")
+        ->type_name("depth_averaged");
+    app->add_option("--fast-runs", arguments->fast_runs, "maximum number of runs of that model; default: 100")
+        ->type_name("N");
     app->add_option("--design", arguments->design, "runs of the design; default: ten per factor")
         ->type_name("N")
         ->check(CLI::Range(3, 2000));

@@ -15,6 +15,13 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
+/// How the two models relate for one observation.
+std::string model_line(const ensemble::ObservedValue& observed, const calibrate::ObservationResult& o) {
+    if (o.pairs == 0) return fmt::format("{:<38}no run of both models has a value\n", observed.name);
+    return fmt::format("{:<38}particles less depth-averaged {:+.3g} +- {:.2g} {} in {} pairs; rho {:.2f}\n",
+                       observed.name, o.model_difference, o.model_spread, observed.unit, o.pairs, o.rho);
+}
+
 }  // namespace
 
 std::string calibration_text(const calibrate::Calibration& c, const std::filesystem::path& folder) {
@@ -23,6 +30,12 @@ std::string calibration_text(const calibrate::Calibration& c, const std::filesys
     std::string text = fmt::format("{} runs, {} failed; {}\nleast misfit {:.3g} in run {}\n\n", r.runs.size(), s.failed,
                                    r.settled ? "no further gain expected" : "stopped at the maximum number of runs",
                                    r.runs[*r.best].misfit, *r.best);
+    if (const calibrate::FastRuns& fast = s.fast; fast.made > 0) {
+        text += fmt::format("the above are runs of particles; beside {} of the depth-averaged model, {} failed\n\n",
+                            fast.made, fast.failed);
+        for (std::size_t j = 0; j < s.observations.size(); ++j) text += model_line(c.observed[j], s.observations[j]);
+        text += "\n";
+    }
     text += fmt::format("{:<38}{:>11}{:>11}{:>11}{:>11}{:>12}\n", "factor", "best fit", "median", "95 % from", "to",
                         "width left");
     for (std::size_t k = 0; k < s.factors.size(); ++k) {
@@ -52,7 +65,8 @@ std::string calibration_line(const calibrate::Calibration& c, const std::filesys
 }
 
 std::string progress_text(const calibrate::CalibrationProgress& p) {
-    std::string text = fmt::format("{}: {} of at most {} runs", search_phase_name(p.phase), p.done + p.failed, p.most);
+    std::string text = fmt::format("{}: {} of at most {} {}runs", search_phase_name(p.phase), p.done + p.failed, p.most,
+                                   p.fast ? "fast " : "");
     if (p.failed > 0) text += fmt::format(", {} failed", p.failed);
     if (std::isfinite(p.least_misfit)) text += fmt::format(", least misfit {:.3g}", p.least_misfit);
     return text + fmt::format(", at most about {} left", clock_text(p.wall_remaining));
@@ -61,6 +75,7 @@ std::string progress_text(const calibrate::CalibrationProgress& p) {
 std::string progress_json(const calibrate::CalibrationProgress& p) {
     const Json json = {{"event", "progress"},
                        {"phase", search_phase_name(p.phase)},
+                       {"fast", p.fast},
                        {"runs_done", p.done},
                        {"runs_failed", p.failed},
                        {"runs_at_most", p.most},

@@ -28,13 +28,15 @@ class SceneModel {
   public:
     SceneModel(ensemble::PlannedRuns& runs, const run::SceneSource& source,
                const std::vector<ensemble::ObservedValue>& observed, const ensemble::EnsembleFolder& folder,
-               std::size_t most, const CalibrationOptions& options, std::vector<ensemble::RunRecord>& records)
+               const CalibrationOptions& options, ModelRuns made, ModelRuns other, bool fast)
         : runs_(runs),
           source_(source),
           folder_(folder),
-          most_(most),
+          most_(made.most),
+          other_(other),
+          fast_(fast),
           options_(options),
-          records_(records),
+          records_(*made.records),
           observed_(observed) {}
 
     Result<std::optional<stats::Points>> predict(const stats::Points& points, SearchPhase phase) {
@@ -74,7 +76,7 @@ class SceneModel {
     }
 
     void tell_run(const ensemble::RunRecord& record, const stats::Points& points, SearchPhase phase) const {
-        CalibrationRun made{record.run, phase, {}, observe::never};
+        CalibrationRun made{record.run, phase, fast_, {}, observe::never};
         const std::vector<ensemble::Factor>& factors = runs_.plan().factors;
         const std::vector<double>& point = points[record.run];
         for (std::size_t k = 0; k < factors.size(); ++k)
@@ -88,21 +90,35 @@ class SceneModel {
         options_.on_run(made);
     }
 
+    static double mean_wall_time(const std::vector<ensemble::RunRecord>& records) {
+        double wall = 0;
+        for (const ensemble::RunRecord& record : records)
+            wall += record.wall_time / static_cast<double>(records.size());
+        return wall;
+    }
+
+    /// s, for what is left of the other model's runs; NaN: none of them has been made.
+    [[nodiscard]] double other_remaining() const {
+        if (other_.records == nullptr) return 0;
+        if (other_.records->empty()) return observe::never;
+        return mean_wall_time(*other_.records) * static_cast<double>(other_.most - other_.records->size()) /
+               std::max(1, options_.runs_at_once);
+    }
+
     void tell(const ensemble::EnsembleProgress& now, SearchPhase phase) const {
         if (!options_.on_progress) return;
         CalibrationProgress p;
         p.phase = phase;
+        p.fast = fast_;
         p.done = now.done;
         p.failed = now.failed;
         p.most = most_;
         p.least_misfit = least_misfit_;
-        double wall = 0;
-        for (const ensemble::RunRecord& record : records_)
-            wall += record.wall_time / static_cast<double>(records_.size());
         const double left = static_cast<double>(most_) - now.share_done * static_cast<double>(now.count);
         const double here = static_cast<double>(now.count) * (1 - now.share_done);  // of this round
         p.wall_remaining = records_.empty() ? (here > 0 ? now.wall_remaining / here * left : observe::never)
-                                            : wall * left / std::max(1, options_.runs_at_once);
+                                            : mean_wall_time(records_) * left / std::max(1, options_.runs_at_once);
+        p.wall_remaining += other_remaining();
         options_.on_progress(p);
     }
 
@@ -110,12 +126,27 @@ class SceneModel {
     const run::SceneSource& source_;
     const ensemble::EnsembleFolder& folder_;
     const std::size_t most_;
+    const ModelRuns other_;
+    const bool fast_;
     const CalibrationOptions options_;
     std::vector<ensemble::RunRecord>& records_;
     const std::vector<ensemble::ObservedValue>& observed_;
     double least_misfit_ = observe::never;
     std::size_t verified_ = 0;  // runs whose records were verified or written by this process
 };
+
+// The fit of an emulator takes the cube of the runs: with 500 about ten seconds for each observation, after every
+// round.
+constexpr std::size_t most_fast_runs = 500;
+
+Result<ensemble::PlannedRuns> plan_runs(const CalibrationPlan& plan, const run::SceneSource& source,
+                                        const scene::Scene& base) {
+    ensemble::EnsemblePlan ensemble;
+    ensemble.runs = std::clamp<std::size_t>(plan.search.runs, 1, 2000);
+    ensemble.seed = plan.search.seed;
+    ensemble.factors = plan.factors;
+    return ensemble::PlannedRuns::make(ensemble, source, base);
+}
 
 }  // namespace
 
@@ -144,18 +175,34 @@ Result<ensemble::PlannedRuns> plan_calibration(const CalibrationPlan& plan, cons
         if (o.uncertainty > 0) continue;
         return Error{fmt::format("{} = {:.6g} has no uncertainty; set one above 0", o.key, o.value)};
     }
-    ensemble::EnsemblePlan ensemble;
-    ensemble.runs = std::clamp<std::size_t>(plan.search.runs, 1, 2000);
-    ensemble.seed = plan.search.seed;
-    ensemble.factors = plan.factors;
-    Result<ensemble::PlannedRuns> made = ensemble::PlannedRuns::make(ensemble, source, base);
+    Result<ensemble::PlannedRuns> made = plan_runs(plan, source, base);
     if (!made) return made;
-    const std::size_t factors = plan.factors.size(), runs = plan.search.runs;
-    if (runs < min_runs(factors) || runs > 2000) {
-        return Error{fmt::format("runs = {} is refused; it must be {} to 2000 with {} factor{}", runs,
-                                 min_runs(factors), factors, factors == 1 ? "" : "s")};
-    }
+    const std::size_t factors = plan.factors.size();
+    const auto check = [&](const char* what, std::size_t runs, std::size_t least, std::size_t most) -> Status {
+        if (runs >= least && runs <= most) return {};
+        return Error{fmt::format("{} = {} is refused; it must be {} to {} with {} factor{}", what, runs, least, most,
+                                 factors, factors == 1 ? "" : "s")};
+    };
+    const bool two = plan.search.fast_runs > 0;
+    TALUS_TRY(check("runs", plan.search.runs, two ? min_runs_beside_fast : min_runs(factors), 2000));
+    if (two) TALUS_TRY(check("fast runs", plan.search.fast_runs, min_runs(factors), most_fast_runs));
     return made;
+}
+
+Result<FastModel> plan_fast_model(const CalibrationPlan& plan, const run::SceneSource& source,
+                                  const scene::Scene& base) {
+    if (base.spec.solver.model == params::ModelChoice::depth_averaged) {
+        return Error{
+            fmt::format("{}: solver.model = \"depth_averaged\" is the faster model itself; a search with two models "
+                        "needs particles",
+                        source.file.string())};
+    }
+    run::SceneSource with_fast = source;
+    with_fast.overrides.emplace_back("solver.model=depth_averaged");
+    Result<scene::Scene> scene = scene::load_scene(with_fast.file, with_fast.overrides);
+    if (!scene) return scene.error();
+    TALUS_ASSIGN(auto runs, plan_runs(plan, with_fast, *scene));
+    return FastModel{std::move(with_fast), std::make_shared<const scene::Scene>(*std::move(scene)), std::move(runs)};
 }
 
 Json calibration_definition(const std::string& kind, const CalibrationPlan& plan, const ensemble::PlannedRuns& runs,
@@ -166,6 +213,9 @@ Json calibration_definition(const std::string& kind, const CalibrationPlan& plan
     definition["runs"] = plan.search.runs;
     definition["search"] = {
         {"design", plan.search.design}, {"checks", plan.search.checks}, {"at_once", plan.search.at_once}};
+    if (plan.fast) {  // not null without, so that earlier folders can be resumed
+        definition["fast"] = {{"runs", plan.search.fast_runs}, {"overrides", plan.fast->source.overrides}};
+    }
     definition["observed"] = Json::array();
     for (const ensemble::ObservedValue& o : observed) {
         definition["observed"].push_back(
@@ -176,9 +226,8 @@ Json calibration_definition(const std::string& kind, const CalibrationPlan& plan
 
 ForwardModel scene_model(ensemble::PlannedRuns& runs, const run::SceneSource& source,
                          const std::vector<ensemble::ObservedValue>& observed, const ensemble::EnsembleFolder& folder,
-                         std::size_t most, const CalibrationOptions& options,
-                         std::vector<ensemble::RunRecord>& records) {
-    auto model = std::make_shared<SceneModel>(runs, source, observed, folder, most, options, records);
+                         const CalibrationOptions& options, ModelRuns made, ModelRuns other, bool fast) {
+    auto model = std::make_shared<SceneModel>(runs, source, observed, folder, options, made, other, fast);
     return [model](const stats::Points& points, SearchPhase phase) { return model->predict(points, phase); };
 }
 
@@ -192,7 +241,21 @@ Result<Calibration> calibrate(const CalibrationPlan& plan, ensemble::PlannedRuns
     made.observed = observed;
     std::vector<stats::Distribution> priors;
     for (const ensemble::Factor& f : made.factors) priors.push_back(f.distribution);
-    const ForwardModel model = scene_model(runs, source, observed, folder, plan.search.runs, options, made.records);
+    const ModelRuns own{plan.search.runs, &made.records}, others{plan.search.fast_runs, &made.fast_records};
+    const ForwardModel model =
+        scene_model(runs, source, observed, folder, options, own, plan.fast ? others : ModelRuns());
+    std::optional<FastModel> fast = plan.fast;
+    std::optional<ensemble::EnsembleFolder> fast_folder;
+    ForwardModel fast_model;
+    if (fast) {
+        TALUS_ASSIGN(auto opened,
+                     ensemble::EnsembleFolder::open(
+                         folder.path() / "fast",
+                         calibration_definition("fast part of a calibration", plan, fast->runs, fast->source,
+                                                *fast->scene, observed, source.file.string())));
+        fast_folder.emplace(std::move(opened));
+        fast_model = scene_model(fast->runs, fast->source, observed, *fast_folder, options, others, own, true);
+    }
     const FitReader on_fit = [&](const SearchResult& so_far) {
         Calibration now;
         now.scene = &base;
@@ -201,13 +264,13 @@ Result<Calibration> calibrate(const CalibrationPlan& plan, ensemble::PlannedRuns
         now.result = so_far;
         options.on_fit(now);
     };
-    Result<SearchResult> found = search(priors, observed, model, plan.search, options.on_fit ? on_fit : FitReader());
+    Result<SearchResult> found =
+        search(priors, observed, model, plan.search, options.on_fit ? on_fit : FitReader(), fast_model);
     if (!found) {
         const auto complete = [](const ensemble::RunRecord& record) { return record.complete(); };
-        if (made.records.empty() || std::any_of(made.records.begin(), made.records.end(), complete)) {
-            return found.error();
-        }
-        made.fault = found.error().message + "; the first: " + made.records.front().fault;
+        const std::vector<ensemble::RunRecord>& last = made.records.empty() ? made.fast_records : made.records;
+        if (last.empty() || std::any_of(last.begin(), last.end(), complete)) return found.error();
+        made.fault = found.error().message + "; the first: " + last.front().fault;
         return made;
     }
     made.result = *std::move(found);

@@ -3,6 +3,8 @@
 #include <atomic>
 #include <cstddef>
 #include <functional>
+#include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -20,13 +22,22 @@
 /// Back-analysis: finds the values of a scene that explain field observations, by runs of that scene.
 namespace talus::calibrate {
 
+/// The scene with a faster model, whose runs show where its own runs are worth their time.
+struct FastModel {
+    run::SceneSource source;
+    std::shared_ptr<const scene::Scene> scene;
+    ensemble::PlannedRuns runs;
+};
+
 struct CalibrationPlan {
     std::vector<ensemble::Factor> factors;  ///< free values with ranges or priors
     SearchOptions search;
+    std::optional<FastModel> fast = {};  ///< where search.fast_runs is above 0
 };
 
 struct CalibrationProgress {
     SearchPhase phase = SearchPhase::design;
+    bool fast = false;                           ///< counts the runs of the fast model, which are under way
     std::size_t done = 0, failed = 0, most = 0;  ///< runs so far, and their maximum number
     double least_misfit = observe::never;
     double wall_remaining = 0;  ///< s, an estimate; NaN: not known yet
@@ -36,6 +47,7 @@ struct CalibrationProgress {
 struct CalibrationRun {
     std::size_t run = 0;
     SearchPhase phase = SearchPhase::design;
+    bool fast = false;               ///< of the fast model
     std::vector<double> values;      ///< of the factors
     double misfit = observe::never;  ///< as SearchRun::misfit
 };
@@ -46,10 +58,10 @@ struct Calibration {
     std::vector<ensemble::Factor> factors;
     std::vector<ensemble::ObservedValue> observed;
     SearchResult result;
-    std::vector<ensemble::RunRecord> records;  ///< as result.runs
-    std::string fault;                         ///< why there is no result: no run is complete; empty: there is one
-    std::vector<std::string> best_overrides;   ///< "section.key=value" that make the scene that of the best run
-    double wall_time = 0;                      ///< s, of this call
+    std::vector<ensemble::RunRecord> records, fast_records;  ///< as result.runs and result.fast_runs
+    std::string fault;                        ///< why there is no result: no run is complete; empty: there is one
+    std::vector<std::string> best_overrides;  ///< "section.key=value" that make the scene that of the best run
+    double wall_time = 0;                     ///< s, of this call
 };
 
 struct CalibrationOptions {
@@ -63,10 +75,15 @@ struct CalibrationOptions {
     std::function<void(const std::string&)> on_refused = {};  ///< as in EnsembleOptions
 };
 
-/// The factors as runs of the scene. Errors: as PlannedRuns::make; a factor without a range; too few runs; nothing
-/// observed, or beyond the flow path.
+/// The factors as runs of the scene. Errors: as PlannedRuns::make; a factor without a range; too few runs, also of the
+/// fast model; nothing observed, or beyond the flow path.
 [[nodiscard]] Result<ensemble::PlannedRuns> plan_calibration(const CalibrationPlan& plan,
                                                              const run::SceneSource& source, const scene::Scene& base);
+
+/// The same runs by the depth-averaged model, for CalibrationPlan::fast. Errors: the scene's model is that one; the
+/// scene is not for it, as load_scene says; as PlannedRuns::make.
+[[nodiscard]] Result<FastModel> plan_fast_model(const CalibrationPlan& plan, const run::SceneSource& source,
+                                                const scene::Scene& base);
 
 /// The definition that identifies a calibration, for EnsembleFolder::open; `kind`: "calibration", or that of other
 /// runs.
@@ -76,15 +93,23 @@ struct CalibrationOptions {
                                                             const std::vector<ensemble::ObservedValue>& observed,
                                                             const std::string& scene_name);
 
+/// Runs of one model: their maximum number, and those made.
+struct ModelRuns {
+    std::size_t most = 0;
+    std::vector<ensemble::RunRecord>* records = nullptr;
+};
+
 /// Predictions of the scene's observations by its runs, which are stored in the folder; existing ones are reused.
-/// `observed`: to evaluate their misfit; `records` receives the runs. All must outlive the model.
+/// `observed`: to evaluate their misfit; `made.records` receives the runs. `other`: of the other model of two, which
+/// the estimate of what remains includes; `fast`: this is the faster one. All must outlive the model.
 [[nodiscard]] ForwardModel scene_model(ensemble::PlannedRuns& runs, const run::SceneSource& source,
                                        const std::vector<ensemble::ObservedValue>& observed,
-                                       const ensemble::EnsembleFolder& folder, std::size_t most,
-                                       const CalibrationOptions& options, std::vector<ensemble::RunRecord>& records);
+                                       const ensemble::EnsembleFolder& folder, const CalibrationOptions& options,
+                                       ModelRuns made, ModelRuns other = {}, bool fast = false);
 
 /// Computes the runs missing in the folder and finds the values that explain `observed` (as observed_values(base), or
-/// other values of the same). Errors: a record cannot be written, or is of another calibration.
+/// other values of the same). Runs of plan.fast are kept in its folder "fast". Errors: a record cannot be written, or
+/// is of another calibration.
 [[nodiscard]] Result<Calibration> calibrate(const CalibrationPlan& plan, ensemble::PlannedRuns runs,
                                             const run::SceneSource& source, const scene::Scene& base,
                                             const std::vector<ensemble::ObservedValue>& observed,

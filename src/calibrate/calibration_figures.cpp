@@ -51,6 +51,18 @@ report::Curve dots_of(const char* style, const char* name, double radius) {
     return {report::Curve::Shape::dots, style, name, {}, {}, {}, radius};
 }
 
+/// The runs of the fast model as dots, if there is one.
+template <class Place>
+void add_fast_runs(report::Plot& plot, const Calibration& c, const Place& place) {
+    report::Curve dots = dots_of("dot-fast", "depth-averaged", 2.2);
+    for (const SearchRun& run : c.result.fast_runs) {
+        const auto [x, y] = place(run);
+        dots.x.push_back(x);
+        dots.y.push_back(y);
+    }
+    if (!dots.x.empty()) plot.curves.push_back(std::move(dots));
+}
+
 /// The runs as dots, each kind in its colour; `place` gives the position; NaN: not drawn.
 template <class Place>
 void add_runs(report::Plot& plot, const Calibration& c, double radius, const Place& place) {
@@ -80,9 +92,11 @@ report::Chart plane_chart(const Calibration& c, const MisfitMap& map) {
     left.cells = {map.x, map.y, map.misfit, {misfit_breaks.begin(), misfit_breaks.end()}, misfit_colours(), "Misfit"};
     left.key = report::Plot::Key::beside;
     for (report::Plot* plot : {&left, &right}) plot->axes(c.factors[0].key, c.factors[1].key);
-    add_runs(left, c, 3.6, [&](const SearchRun& run) {
+    const auto place = [&](const SearchRun& run) {
         return std::pair{value_of(c, 0, run.point), value_of(c, 1, run.point)};
-    });
+    };
+    add_fast_runs(left, c, place);
+    add_runs(left, c, 3.6, place);
     report::Curve draws = dots_of("draw-dot", "", 1.5);
     for (const auto& draw : c.result.posterior.draws) {
         draws.x.push_back(std::clamp(value_of(c, 0, draw), x.low, x.high));
@@ -125,9 +139,11 @@ report::Chart line_chart(const Calibration& c, const MisfitMap& map) {
     std::vector<double> shown;
     for (const double misfit : map.misfit) shown.push_back(misfit <= y.high ? misfit : observe::never);
     plot.line(at, shown, "series blue");
-    add_runs(plot, c, 3.6, [&](const SearchRun& run) {
+    const auto place = [&](const SearchRun& run) {
         return std::pair{value_of(c, 0, run.point), run.misfit <= y.high ? run.misfit : observe::never};
-    });
+    };
+    add_fast_runs(plot, c, place);
+    add_runs(plot, c, 3.6, place);
     return {"Misfit of all runs", 1000, 440, {std::move(plot)}};
 }
 

@@ -21,15 +21,13 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-std::string run_csv(const Calibration& c) {
-    std::string header = "run,phase,status";
-    for (const ensemble::Factor& f : c.factors) header += "," + f.key;
-    for (const ensemble::ObservedValue& o : c.observed) header += "," + o.key;
-    products::Csv csv(header + ",misfit,expected_improvement,wall_time_s,hash,fault");
-    for (std::size_t i = 0; i < c.result.runs.size(); ++i) {
-        const SearchRun& run = c.result.runs[i];
-        const ensemble::RunRecord& record = c.records[i];
+void add_run_rows(products::Csv& csv, const Calibration& c, const std::vector<SearchRun>& runs,
+                  const std::vector<ensemble::RunRecord>& records) {
+    for (std::size_t i = 0; i < runs.size(); ++i) {
+        const SearchRun& run = runs[i];
+        const ensemble::RunRecord& record = records[i];
         csv.number(static_cast<double>(i))
+            .word(record.model)
             .word(search_phase_name(run.phase))
             .word(record.complete() ? "complete" : "failed");
         for (const std::string& value : record.values) csv.word(value);
@@ -38,7 +36,25 @@ std::string run_csv(const Calibration& c) {
         csv.number(run.misfit).number(run.improvement).number(record.wall_time).word(record.hash).word(record.fault);
         csv.end_row();
     }
+}
+
+std::string run_csv(const Calibration& c) {
+    std::string header = "run,model,phase,status";
+    for (const ensemble::Factor& f : c.factors) header += "," + f.key;
+    for (const ensemble::ObservedValue& o : c.observed) header += "," + o.key;
+    products::Csv csv(header + ",misfit,expected_improvement,wall_time_s,hash,fault");
+    add_run_rows(csv, c, c.result.runs, c.records);
+    add_run_rows(csv, c, c.result.fast_runs, c.fast_records);
     return csv.text();
+}
+
+/// null where the scene's model alone was run.
+Json fast_runs_json(const CalibrationSummary& s) {
+    if (s.fast.made == 0) return {};
+    return {{"model", "depth_averaged"},
+            {"runs", s.fast.made},
+            {"failed", s.fast.failed},
+            {"wall_time_s", s.fast.wall_time}};
 }
 
 std::string factor_csv(const Calibration& c, const CalibrationSummary& s) {
@@ -169,10 +185,16 @@ Json calibration_json(const Calibration& c) {
                                 {"emulator_explained", number_or_null<Json>(o.explained)},
                                 {"run_noise", number_or_null<Json>(o.noise)},
                                 {"emulator_reach_told", o.reach_told}});
+        if (s.fast.made == 0) continue;
+        observations.back()["models"] = {{"pairs", o.pairs},
+                                         {"difference", number_or_null<Json>(o.model_difference)},
+                                         {"deviation", number_or_null<Json>(o.model_spread)},
+                                         {"rho", o.rho}};
     }
     return {{"runs", r.runs.size()},
             {"complete", s.complete},
             {"failed", s.failed},
+            {"fast_runs", fast_runs_json(s)},
             {"best_run", *r.best},
             {"best_misfit", r.runs[*r.best].misfit},
             {"best_hash", c.records[*r.best].hash},

@@ -31,6 +31,16 @@ struct ObservationResult {
     double explained = 0;                  ///< share of the runs' variance that it explains
     double noise = 0;                      ///< standard deviation of runs around the emulator
     double reach_told = 1;  ///< share of the runs for which the emulator predicts correctly whether debris arrives
+    /// Of two models: the factor on the fast one in the emulator, and mean and standard deviation of the difference of
+    /// the runs' predictions, the fast model's taken off, over the places where both ran and have a value.
+    double rho = 0, model_difference = observe::never, model_spread = observe::never;
+    std::size_t pairs = 0;
+};
+
+/// Runs of the faster model, if there is one.
+struct FastRuns {
+    std::size_t made = 0, failed = 0;
+    double wall_time = 0;  ///< s, of all together
 };
 
 /// All numerical results of a calibration.
@@ -38,6 +48,7 @@ struct CalibrationSummary {
     std::vector<FactorResult> factors;
     std::vector<ObservationResult> observations;
     std::size_t complete = 0, failed = 0;
+    FastRuns fast;
     double checks_within = observe::never;  ///< share of the checks within the 95 % interval of the emulators
     std::vector<std::string> warnings;      ///< limitations that a reader must know, one sentence each
 };

@@ -32,10 +32,13 @@ Json key_figures_of(const Calibration& c, const CalibrationSummary& s) {
                                  fmt::format("95 %: {} to {}; best fit {}", significant(f.low, 3),
                                              significant(f.high, 3), significant(f.best, 3))));
     }
-    all.push_back(key_figure("runs", "Runs", s.complete, "", "",
-                             s.failed > 0       ? fmt::format("{} failed", s.failed)
-                             : c.result.settled ? "ended: no further gain expected"
-                                                : "stopped at the maximum number"));
+    const std::string ending = s.failed > 0       ? fmt::format("{} failed", s.failed)
+                               : c.result.settled ? "ended: no further gain expected"
+                                                  : "stopped at the maximum number";
+    all.push_back(s.fast.made == 0
+                      ? key_figure("runs", "Runs", s.complete, "", "", ending)
+                      : key_figure("runs", "Runs of particles", s.complete, "", "",
+                                   fmt::format("beside {} of the depth-averaged model; {}", s.fast.made, ending)));
     return all;
 }
 
@@ -139,7 +142,26 @@ Json convergence_of(const Calibration& c, const CalibrationSummary& s) {
                 "tells {} % of the variance of runs that it does not know, and of {} % of them whether debris comes",
                 fixed(100 * s.observations[j].explained, 1), fixed(100 * s.observations[j].reach_told, 0)));
     }
+    for (std::size_t j = 0; j < s.observations.size() && s.fast.made > 0; ++j) {
+        const ObservationResult& o = s.observations[j];
+        const std::string& unit = c.observed[j].unit;
+        row("Particles less depth-averaged, " + c.observed[j].name,
+            o.pairs == 0 ? std::string("no run of both has a value")
+                         : fmt::format("{} ± {} {} in {} pairs of runs; the emulator takes the fast model times {}",
+                                       significant(o.model_difference, 3), significant(o.model_spread, 2), unit,
+                                       o.pairs, fixed(o.rho, 2)));
+    }
     return rows;
+}
+
+/// null where the scene's model alone was run.
+Json fast_of(const Calibration& c, const CalibrationSummary& s) {
+    if (s.fast.made == 0) return {};
+    return {{"model", "depth_averaged"},
+            {"runs", s.fast.made},
+            {"failed", s.fast.failed},
+            {"wall_time_s", s.fast.wall_time},
+            {"particle_runs", c.result.runs.size()}};
 }
 
 }  // namespace
@@ -162,6 +184,7 @@ Json calibration_results(const Calibration& c, const CalibrationSummary& s, cons
                 {"convergence_chart", chart_json(convergence_chart(c))},
                 {"convergence", convergence_of(c, s)},
                 {"chains", chain_count},
+                {"fast", fast_of(c, s)},
                 {"wall_time_s", wall}});
     return all;
 }

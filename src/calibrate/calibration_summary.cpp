@@ -40,6 +40,26 @@ double filled(const ensemble::ObservedValue& observed, double predicted) {
     return std::isfinite(predicted) ? predicted : observed.unreached;
 }
 
+/// Over the places where both models ran and have a value.
+void compare_models(const SearchResult& result, std::size_t observation, ObservationResult& o) {
+    std::vector<double> differences;
+    for (const SearchRun& run : result.runs) {
+        const auto twin = std::find_if(result.fast_runs.begin(), result.fast_runs.end(),
+                                       [&](const SearchRun& fast) { return fast.point == run.point; });
+        if (run.predicted.empty() || twin == result.fast_runs.end() || twin->predicted.empty()) continue;
+        const double difference = run.predicted[observation] - twin->predicted[observation];
+        if (std::isfinite(difference)) differences.push_back(difference);
+    }
+    o.pairs = differences.size();
+    if (o.pairs == 0) return;
+    const auto n = static_cast<double>(o.pairs);
+    double sum = 0, square = 0;
+    for (const double d : differences) sum += d;
+    o.model_difference = sum / n;
+    for (const double d : differences) square += (d - o.model_difference) * (d - o.model_difference);
+    o.model_spread = o.pairs > 1 ? std::sqrt(square / (n - 1)) : observe::never;
+}
+
 ObservationResult summarise_observation(const Calibration& c, std::size_t j) {
     const ensemble::ObservedValue& observed = c.observed[j];
     const SearchResult& result = c.result;
@@ -47,10 +67,12 @@ ObservationResult summarise_observation(const Calibration& c, std::size_t j) {
     o.best = result.runs[*result.best].predicted[j];
     o.deviation = deviation_of(observed, filled(observed, o.best));
     std::vector<double> design, expected;
-    for (const SearchRun& run : result.runs) {
+    // Of two models, the faster one has the design that fills the ranges.
+    for (const SearchRun& run : result.fast_runs.empty() ? result.runs : result.fast_runs) {
         if (run.phase == SearchPhase::design && !run.predicted.empty())
             design.push_back(filled(observed, run.predicted[j]));
     }
+    if (!result.fast_runs.empty()) compare_models(result, j, o);
     o.prior_low = ensemble::percentile(design, 5);
     o.prior_high = ensemble::percentile(design, 95);
     const stats::PredictionEmulator& emulator = result.fit.emulators[j];
@@ -76,6 +98,7 @@ ObservationResult summarise_observation(const Calibration& c, std::size_t j) {
     o.left_out = std::sqrt(error);
     o.explained = spread > 0 ? 1 - error / spread : observe::never;
     o.noise = emulator.value()->noise_deviation();
+    o.rho = emulator.value()->rho();
     return o;
 }
 
@@ -140,6 +163,11 @@ void warn_of_observations(const Calibration& c, CalibrationSummary& s) {
 CalibrationSummary summarise(const Calibration& c) {
     CalibrationSummary s;
     for (const SearchRun& run : c.result.runs) run.predicted.empty() ? ++s.failed : ++s.complete;
+    for (const SearchRun& run : c.result.fast_runs) {
+        ++s.fast.made;
+        s.fast.failed += run.predicted.empty() ? 1 : 0;
+    }
+    for (const ensemble::RunRecord& record : c.fast_records) s.fast.wall_time += record.wall_time;
     for (std::size_t k = 0; k < c.factors.size(); ++k) s.factors.push_back(summarise_factor(c, k));
     for (std::size_t j = 0; j < c.observed.size(); ++j) s.observations.push_back(summarise_observation(c, j));
     if (!c.result.checks.empty()) {
@@ -156,6 +184,16 @@ CalibrationSummary summarise(const Calibration& c) {
     }
     if (s.failed > 0) {
         s.warnings.push_back(fmt::format("{} of {} runs failed and are left out.", s.failed, c.result.runs.size()));
+    }
+    if (s.fast.failed > 0) {
+        s.warnings.push_back(fmt::format("{} of {} runs of the depth-averaged model failed and are left out.",
+                                         s.fast.failed, s.fast.made));
+    }
+    if (s.fast.made > 0 && c.result.emulator_share > 1) {
+        s.warnings.push_back(fmt::format(
+            "With {} runs of particles, the emulators' uncertainty is {:.1f} times that of an observation over "
+            "the posterior; more of these runs would narrow it.",
+            s.complete, c.result.emulator_share));
     }
     return s;
 }

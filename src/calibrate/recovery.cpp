@@ -60,7 +60,8 @@ Result<Recovery> recover(const CalibrationPlan& plan, const ensemble::PlannedRun
                                      folder / "truths", calibration_definition("set of known runs", plan, runs, source,
                                                                                base, observed, scene_name)));
     std::vector<ensemble::RunRecord> records;
-    const ForwardModel model = scene_model(truths, source, observed, all, max_draws_per_seed * seeds, options, records);
+    const ForwardModel model =
+        scene_model(truths, source, observed, all, options, {max_draws_per_seed * seeds, &records});
     std::vector<std::size_t> usable;
     stats::Points points;
     while (usable.size() < seeds) {

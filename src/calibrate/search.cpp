@@ -253,29 +253,6 @@ void Searcher::choose(std::size_t count, stats::Points& points, std::vector<doub
     }
 }
 
-/// Some of the candidates, one after the other, each of which brings the draws closest to one of those chosen.
-stats::Points representatives(const stats::Points& candidates, const stats::Points& draws, std::size_t count) {
-    stats::Points chosen;
-    std::vector<double> nearest(draws.size(), std::numeric_limits<double>::infinity());
-    while (chosen.size() < std::min(count, candidates.size())) {
-        const std::vector<double>* best = nullptr;
-        double least = std::numeric_limits<double>::infinity();
-        for (const auto& candidate : candidates) {
-            if (std::find(chosen.begin(), chosen.end(), candidate) != chosen.end()) continue;
-            double sum = 0;
-            for (std::size_t i = 0; i < draws.size(); ++i)
-                sum += std::min(nearest[i], square_distance(candidate, draws[i]));
-            if (best != nullptr && sum >= least) continue;
-            best = &candidate;
-            least = sum;
-        }
-        chosen.push_back(*best);
-        for (std::size_t i = 0; i < draws.size(); ++i)
-            nearest[i] = std::min(nearest[i], square_distance(*best, draws[i]));
-    }
-    return chosen;
-}
-
 void Searcher::judge_checks(const Fit& before) {
     for (std::size_t i = 0; i < result_.runs.size(); ++i) {
         const SearchRun& run = result_.runs[i];
@@ -316,7 +293,7 @@ Result<bool> Searcher::make_design_beside_fast(std::size_t count) {
     if (!went_on) return false;
     const stats::Points fast = points_of(result_.fast_runs, true);
     const Posterior expected = sample_posterior(result_.fit, fast, seeded(short_chains));
-    return run(representatives(fast, expected.draws, count), SearchPhase::design);
+    return run(stats::representatives(fast, expected.draws, count), SearchPhase::design);
 }
 
 /// Runs of the fast model where it is least certain within the posterior of both.
@@ -362,7 +339,7 @@ Result<bool> Searcher::make_rounds() {
             result_.settled = true;
             break;
         }
-        TALUS_ASSIGN(bool went_on, !beside_fast() || run_fast(points, SearchPhase::search));
+        TALUS_ASSIGN(bool went_on, run_fast(points, SearchPhase::search));
         if (!went_on) return false;
         TALUS_ASSIGN(went_on, run(points, SearchPhase::search, improvements));
         if (!went_on) return false;
@@ -383,10 +360,8 @@ Result<bool> Searcher::make_checks() {
     TALUS_ASSIGN(bool went_on, run(points, SearchPhase::check));
     if (!went_on) return false;
     judge_checks(before);
-    if (beside_fast()) {
-        TALUS_ASSIGN(went_on, run_fast(points, SearchPhase::check));
-        if (!went_on) return false;
-    }
+    TALUS_ASSIGN(went_on, run_fast(points, SearchPhase::check));
+    if (!went_on) return false;
     fit();
     result_.posterior = sample_posterior(result_.fit, run_points(), seeded(long_chains));
     result_.emulator_share = mean_share(result_.fit, result_.posterior.draws);

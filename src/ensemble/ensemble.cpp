@@ -105,6 +105,7 @@ std::optional<std::pair<RunRecord, observe::HazardMaps>> Workers::compute(std::s
         record.fault = scene.error().message;
         return made;
     }
+    record.model = scene->spec.solver.model == params::ModelChoice::depth_averaged ? "depth_averaged" : "particles";
     run::RunOptions run_options;
     run_options.stop_requested = options_.stop_requested;
     run_options.on_progress = [&](const run::Progress& now) { report(worker, now.share_done); };

@@ -83,6 +83,7 @@ Json header_json(const std::string& plan, const RunRecord& r) {
     return {{"plan", plan},
             {"run", r.run},
             {"fault", r.fault},
+            {"model", r.model},
             {"values", r.values},
             {"results", numbers_json(r.results)},
             {"buildings", buildings},
@@ -97,6 +98,7 @@ RunRecord record_of(const Json& j) {
     RunRecord r;
     r.run = j.at("run").get<std::size_t>();
     r.fault = j.at("fault").get<std::string>();
+    r.model = j.value("model", "");
     r.values = j.at("values").get<std::vector<std::string>>();
     for (const Json& v : j.at("results")) r.results.push_back(number_or_never(v));
     for (const Json& b : j.at("buildings")) r.buildings.push_back(building_of(b));

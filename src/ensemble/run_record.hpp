@@ -33,6 +33,7 @@ struct Measure {
 struct RunRecord {
     std::size_t run = 0;              ///< index in the plan
     std::string fault;                ///< why there is no result; empty: complete
+    std::string model;                ///< "particles", "depth_averaged"; empty: of an earlier version, or not loaded
     std::vector<std::string> values;  ///< of the factors
     std::vector<double> results;      ///< as measures_of
     std::vector<observe::BuildingImpact> buildings;

@@ -214,6 +214,10 @@ Emulator Emulator::fit_beside(std::shared_ptr<const Emulator> fast, Points point
     if (points.empty()) return beside;
     beside.rho_square_ = beside.expected_rho_square();
     const double least = beside.find_shape();
+    // Fewer runs, or runs all alike, do not tell that the models have nothing in common.
+    const std::size_t enough = 2 * (points.front().size() + 2);
+    const bool varies = product(beside.scaled_, beside.scaled_) > 0;
+    if (points.size() < enough || !varies) return beside;
     Emulator alone;
     alone.take(std::move(points), values);
     return alone.find_shape() < least ? alone : beside;

@@ -156,6 +156,34 @@ Chains sample_density(const LogDensity& density, const Points& starts, const Cha
     return made;
 }
 
+Points representatives(const Points& candidates, const Points& draws, std::size_t count) {
+    const auto square_distance = [](const std::vector<double>& a, const std::vector<double>& b) {
+        double square = 0;
+        for (std::size_t k = 0; k < a.size(); ++k) square += (a[k] - b[k]) * (a[k] - b[k]);
+        return square;
+    };
+    Points chosen;
+    std::vector<double> nearest(draws.size(), std::numeric_limits<double>::infinity());
+    while (chosen.size() < std::min(count, candidates.size())) {
+        const std::vector<double>* best = nullptr;
+        double least = std::numeric_limits<double>::infinity();
+        for (const auto& candidate : candidates) {
+            if (std::find(chosen.begin(), chosen.end(), candidate) != chosen.end()) continue;
+            double sum = 0;
+            for (std::size_t i = 0; i < draws.size(); ++i)
+                sum += std::min(nearest[i], square_distance(candidate, draws[i]));
+            if (best != nullptr && sum >= least) continue;
+            best = &candidate;
+            least = sum;
+        }
+        if (best == nullptr) break;  // candidates that repeat each other
+        chosen.push_back(*best);
+        for (std::size_t i = 0; i < draws.size(); ++i)
+            nearest[i] = std::min(nearest[i], square_distance(*best, draws[i]));
+    }
+    return chosen;
+}
+
 double split_r_hat(const std::vector<std::vector<double>>& chains) {
     const Variances v = variances_of(chains);
     return std::sqrt(v.whole / v.within);

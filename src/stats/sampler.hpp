@@ -32,6 +32,10 @@ struct Chains {
 [[nodiscard]] Points spread_starts(const LogDensity& density, const Points& points, std::size_t count,
                                    std::uint64_t seed);
 
+/// Up to `count` of the candidates that stand for the draws: one after the other, that which brings the draws closest,
+/// by the sum of squares, to the nearest of those chosen.
+[[nodiscard]] Points representatives(const Points& candidates, const Points& draws, std::size_t count);
+
 /// How far the halves of the chains disagree about one number; 1: not at all (split R-hat, Gelman et al. 2013,
 /// "Bayesian Data Analysis", section 11.4). NaN where no chain moved.
 [[nodiscard]] double split_r_hat(const std::vector<std::vector<double>>& chains);

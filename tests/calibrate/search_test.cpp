@@ -1,5 +1,6 @@
 #include "calibrate/search.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <vector>
 
@@ -215,6 +216,92 @@ TEST(Search, ReturnsTheTruthWithinItsIntervalInNineOfTenSeeds) {
     }
     EXPECT_GE(returned, seeds * 9 / 10);
     EXPECT_LT(width, 0.75);  // intervals that span everything would return anything
+}
+
+/// Another model of the block, with less friction and slower throughout.
+ForwardModel fast_model(std::size_t* made = nullptr) {
+    return [made](const stats::Points& points, SearchPhase) -> Result<std::optional<stats::Points>> {
+        if (made != nullptr) *made = points.size();
+        stats::Points predicted;
+        for (const auto& p : points) {
+            std::vector<double> values = slide({0.8 * p[0], p[1]});
+            for (double& v : values) v = 0.9 * v + 0.4;
+            predicted.push_back(std::move(values));
+        }
+        return std::optional(predicted);
+    };
+}
+
+TEST(SearchWithTwoModels, ThePosteriorIsThatOfTheSlowModelWithATenthOfItsRuns) {
+    const auto observed = observed_as(slide({0.4, 0.3}));
+    const auto full = search(priors, observed, model_of(), {.runs = 60});
+    std::size_t fast_made = 0;
+    const auto found = search(priors, observed, model_of(), {.runs = 6, .fast_runs = 50}, {}, fast_model(&fast_made));
+    const auto fast = search(priors, observed, fast_model(), {.runs = 40});
+    ASSERT_TRUE(full && found && fast);
+    EXPECT_LE(found->runs.size(), 6u);
+    EXPECT_LE(found->fast_runs.size(), 50u);
+    EXPECT_EQ(found->fast_runs.size(), fast_made);
+    for (const double percent : {2.5, 50.0, 97.5}) {
+        const double wanted = full->posterior.quantile(0, percent);
+        EXPECT_NEAR(found->posterior.quantile(0, percent), wanted, 0.05) << percent;
+    }
+    // which the fast model alone does not tell
+    EXPECT_GT(std::abs(fast->posterior.quantile(0, 50) - full->posterior.quantile(0, 50)), 0.05);
+}
+
+TEST(SearchWithTwoModels, EveryRunIsAtAPlaceOfTheFastModel) {
+    const auto found =
+        search(priors, observed_as(slide({0.4, 0.3})), model_of(), {.runs = 8, .fast_runs = 40}, {}, fast_model());
+    ASSERT_TRUE(found);
+    EXPECT_EQ(found->runs.size(), 8u);
+    for (const SearchRun& run : found->runs) {
+        EXPECT_TRUE(std::any_of(found->fast_runs.begin(), found->fast_runs.end(),
+                                [&](const SearchRun& fast) { return fast.point == run.point; }));
+    }
+    EXPECT_LT(found->runs[*found->best].misfit, 1);
+}
+
+TEST(SearchWithTwoModels, ReturnsTheTruthWithinItsInterval) {
+    constexpr std::size_t seeds = 10;
+    std::size_t returned = 0;
+    double width = 0;
+    for (std::size_t seed = 1; seed <= seeds; ++seed) {
+        const std::vector<double> truth = {stats::draw(seed, 0, 0), stats::draw(seed, 0, 1)};
+        std::vector<double> values = slide(truth, 0.1);
+        for (std::size_t j = 0; j < 2; ++j)
+            values[j] = std::max(0.0, filled(values[j]) + stats::normal_draw(seed, 1, j));
+        const auto found = search(priors, observed_as(values), model_of(0.1),
+                                  {.runs = 6, .fast_runs = 30, .seed = seed}, {}, fast_model());
+        ASSERT_TRUE(found);
+        bool all = true;
+        for (std::size_t k = 0; k < 2; ++k) {
+            const double low = found->posterior.quantile(k, 2.5), high = found->posterior.quantile(k, 97.5);
+            all = all && low <= truth[k] && truth[k] <= high;
+            width += (high - low) / (2 * seeds);
+        }
+        returned += all ? 1 : 0;
+    }
+    EXPECT_GE(returned, seeds * 9 / 10);
+    EXPECT_LT(width, 0.75);
+}
+
+TEST(SearchWithTwoModels, GoesOnWhereTheFastModelFailsOrTellsNothing) {
+    const ForwardModel fails = [](const stats::Points& points, SearchPhase) -> Result<std::optional<stats::Points>> {
+        return std::optional(stats::Points(points.size()));
+    };
+    const auto observed = observed_as(slide({0.4, 0.3}));
+    const auto none = search(priors, observed, model_of(), {.runs = 8, .fast_runs = 20}, {}, fails);
+    ASSERT_FALSE(none);
+    EXPECT_EQ(none.error().message, "no run of the fast model is complete, so there is nothing to search by");
+    const ForwardModel stops = [](const stats::Points& points, SearchPhase) -> Result<std::optional<stats::Points>> {
+        return std::optional(stats::Points(points.size(), {observe::never, observe::never}));
+    };
+    const auto found = search(priors, observed, model_of(), {.runs = 20, .fast_runs = 20}, {}, stops);
+    ASSERT_TRUE(found);
+    EXPECT_EQ(found->runs.size(), 20u);
+    EXPECT_LT(found->posterior.quantile(0, 2.5), 0.4);
+    EXPECT_GT(found->posterior.quantile(0, 97.5), 0.4);
 }
 
 TEST(Search, GoesOnAroundRunsThatFail) {

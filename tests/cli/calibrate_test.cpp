@@ -185,5 +185,70 @@ TEST(Calibrate, BadInputIsOneLineAndLeavesNothing) {
     EXPECT_EQ(scene.files(), before);
 }
 
+TEST(Calibrate, SearchesWithTheFasterModelAndConfirmsWithParticles) {
+    const FlowingScene scene;
+    const ProgramOptions here{.folder = scene.folder()};
+    const std::vector<std::string> two = {"--search-with", "depth_averaged",        "--fast-runs", "12",
+                                          "--set",         "solver.grid_cell_m=2.5"};
+    auto loud = two;
+    loud.emplace_back("--json");
+    const auto outcome = run_program(calibrate_command("two", loud, "5"), here);
+    ASSERT_EQ(outcome.exit_code, 0) << outcome.error;
+    const auto event = nlohmann::json::parse(lines_of(outcome.out).back());
+    EXPECT_LE(event.at("runs").get<int>(), 5);
+    EXPECT_EQ(event.at("fast_runs").at("model"), "depth_averaged");
+    EXPECT_LE(event.at("fast_runs").at("runs").get<int>(), 12);
+    EXPECT_EQ(event.at("observations")[0].at("models").at("pairs"), event.at("runs"));
+    int particles = 0, fast = 0;
+    for (const std::string& line : lines_of(read_text(scene.folder() / "two/runs.csv"))) {
+        particles += line.find(",particles,") != std::string::npos ? 1 : 0;
+        fast += line.find(",depth_averaged,") != std::string::npos ? 1 : 0;
+    }
+    EXPECT_EQ(particles, event.at("runs").get<int>());
+    EXPECT_EQ(fast, event.at("fast_runs").at("runs").get<int>());
+    const std::string page = read_text(scene.folder() / "two/report.html");
+    EXPECT_THAT(page, HasSubstr("class=\"dot-fast\""));
+    EXPECT_THAT(page, HasSubstr("Two models were run"));
+    const auto results = nlohmann::json::parse(read_text(scene.folder() / "two/results.json"));
+    EXPECT_EQ(results.at("fast").at("runs"), event.at("fast_runs").at("runs"));
+    EXPECT_THAT(read_text(scene.folder() / "two/best_fit/scene.toml"), testing::Not(HasSubstr("\nmodel = \"depth_averaged\"")));
+
+    // interrupted while the fast model runs, then to the same result
+    ProgramOptions options = here;
+    options.wait_for = "\"event\":\"progress\"";
+    options.while_running = [](int process) { kill(process, SIGINT); };
+    loud.insert(loud.end(), {"--threads", "1"});
+    const auto first = run_program(calibrate_command("part", loud, "5"), options);
+    ASSERT_EQ(first.exit_code, 130) << first.error;
+    auto quiet = two;
+    quiet.emplace_back("--quiet");
+    ASSERT_EQ(run_program(calibrate_command("part", quiet, "5"), here).exit_code, 0);
+    for (const char* file : {"factors.csv", "observations.csv", "posterior.csv"}) {
+        EXPECT_EQ(read_text(scene.folder() / "two" / file), read_text(scene.folder() / "part" / file)) << file;
+    }
+    // the runs of one model alone are another calibration
+    const auto other = run_program(calibrate_command("two", {"--quiet"}, "8"), here);
+    EXPECT_EQ(other.exit_code, 2);
+    EXPECT_THAT(other.error, HasSubstr("holds another ensemble"));
+}
+
+TEST(Calibrate, SaysWhyItCannotSearchWithTwoModels) {
+    const FlowingScene scene;
+    const auto refused = [&](const std::vector<std::string>& more, const std::string& runs) {
+        const auto outcome = run_program(calibrate_command("none", more, runs), {.folder = scene.folder()});
+        EXPECT_EQ(outcome.exit_code, 2);
+        return outcome.error;
+    };
+    EXPECT_THAT(refused({"--search-with", "particles"}, "8"), HasSubstr("it must be depth_averaged"));
+    EXPECT_THAT(refused({"--fast-runs", "20"}, "8"), HasSubstr("--search-with"));
+    EXPECT_THAT(refused({"--search-with", "depth_averaged", "--fast-runs", "5"}, "8"),
+                HasSubstr("fast runs = 5 is refused; it must be 8 to 500 with 2 factors"));
+    EXPECT_THAT(refused({"--search-with", "depth_averaged"}, "2"),
+                HasSubstr("runs = 2 is refused; it must be 3 to 2000"));
+    EXPECT_THAT(refused({"--search-with", "depth_averaged", "--set", "solver.model=depth_averaged"}, "8"),
+                HasSubstr("is the faster model itself"));
+    EXPECT_FALSE(fs::exists(scene.folder() / "none"));
+}
+
 }  // namespace
 }  // namespace talus::test
