@@ -15,6 +15,22 @@ std::string number_text(double value) {
     return std::isfinite(value) ? fmt::format("{:.4g}", value) : std::string("-");
 }
 
+std::string two_models_text(const ensemble::TwoModels& both) {
+    std::string text = fmt::format("\nwith {} runs of the depth-averaged model, {} beside particles\n",
+                                   both.fast_complete, both.pairs);
+    text += fmt::format("{:<40}{:>22}{:>22}  {}\n", "mean of", "particles alone", "with both", "unit");
+    const auto row = [&](const ensemble::TwoModelMean& m, const std::string& name, double factor, const char* unit) {
+        const auto with_error = [&](double mean, double error) {
+            return fmt::format("{:.4g} +- {:.2g}", factor * mean, factor * error);
+        };
+        text += fmt::format("{:<40}{:>22}{:>22}  {}\n", name, with_error(m.mean.plain, m.mean.plain_error),
+                            with_error(m.mean.mean, m.mean.error), unit);
+    };
+    for (const ensemble::TwoModelMean& m : both.results) row(m, m.name, 1, m.unit.c_str());
+    for (const ensemble::TwoModelMean& m : both.buildings) row(m, "hits of " + m.name, 100, "%");
+    return text;
+}
+
 }  // namespace
 
 std::string ensemble_text(const ensemble::EnsembleResult& result, const std::filesystem::path& folder) {
@@ -35,6 +51,7 @@ std::string ensemble_text(const ensemble::EnsembleResult& result, const std::fil
         if (shown <= 12) text += fmt::format("{:<40}{:>9.0f} %\n", b.name.empty() ? "unnamed" : b.name, 100 * b.hit);
     }
     if (shown > 12) text += fmt::format("and {} more, see buildings.csv\n", shown - 12);
+    if (result.two_models) text += two_models_text(*result.two_models);
     return text + fmt::format("\n{}\n", (folder / "report.html").string());
 }
 

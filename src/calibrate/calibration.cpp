@@ -139,13 +139,12 @@ class SceneModel {
 // round.
 constexpr std::size_t most_fast_runs = 500;
 
-Result<ensemble::PlannedRuns> plan_runs(const CalibrationPlan& plan, const run::SceneSource& source,
-                                        const scene::Scene& base) {
+ensemble::EnsemblePlan ensemble_of(const CalibrationPlan& plan) {
     ensemble::EnsemblePlan ensemble;
     ensemble.runs = std::clamp<std::size_t>(plan.search.runs, 1, 2000);
     ensemble.seed = plan.search.seed;
     ensemble.factors = plan.factors;
-    return ensemble::PlannedRuns::make(ensemble, source, base);
+    return ensemble;
 }
 
 }  // namespace
@@ -175,7 +174,7 @@ Result<ensemble::PlannedRuns> plan_calibration(const CalibrationPlan& plan, cons
         if (o.uncertainty > 0) continue;
         return Error{fmt::format("{} = {:.6g} has no uncertainty; set one above 0", o.key, o.value)};
     }
-    Result<ensemble::PlannedRuns> made = plan_runs(plan, source, base);
+    Result<ensemble::PlannedRuns> made = ensemble::PlannedRuns::make(ensemble_of(plan), source, base);
     if (!made) return made;
     const std::size_t factors = plan.factors.size();
     const auto check = [&](const char* what, std::size_t runs, std::size_t least, std::size_t most) -> Status {
@@ -189,20 +188,9 @@ Result<ensemble::PlannedRuns> plan_calibration(const CalibrationPlan& plan, cons
     return made;
 }
 
-Result<FastModel> plan_fast_model(const CalibrationPlan& plan, const run::SceneSource& source,
-                                  const scene::Scene& base) {
-    if (base.spec.solver.model == params::ModelChoice::depth_averaged) {
-        return Error{
-            fmt::format("{}: solver.model = \"depth_averaged\" is the faster model itself; a search with two models "
-                        "needs particles",
-                        source.file.string())};
-    }
-    run::SceneSource with_fast = source;
-    with_fast.overrides.emplace_back("solver.model=depth_averaged");
-    Result<scene::Scene> scene = scene::load_scene(with_fast.file, with_fast.overrides);
-    if (!scene) return scene.error();
-    TALUS_ASSIGN(auto runs, plan_runs(plan, with_fast, *scene));
-    return FastModel{std::move(with_fast), std::make_shared<const scene::Scene>(*std::move(scene)), std::move(runs)};
+Result<ensemble::FastModel> plan_fast_model(const CalibrationPlan& plan, const run::SceneSource& source,
+                                            const scene::Scene& base) {
+    return ensemble::fast_model(ensemble_of(plan), source, base);
 }
 
 Json calibration_definition(const std::string& kind, const CalibrationPlan& plan, const ensemble::PlannedRuns& runs,
@@ -244,7 +232,7 @@ Result<Calibration> calibrate(const CalibrationPlan& plan, ensemble::PlannedRuns
     const ModelRuns own{plan.search.runs, &made.records}, others{plan.search.fast_runs, &made.fast_records};
     const ForwardModel model =
         scene_model(runs, source, observed, folder, options, own, plan.fast ? others : ModelRuns());
-    std::optional<FastModel> fast = plan.fast;
+    std::optional<ensemble::FastModel> fast = plan.fast;
     std::optional<ensemble::EnsembleFolder> fast_folder;
     ForwardModel fast_model;
     if (fast) {

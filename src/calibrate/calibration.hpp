@@ -3,7 +3,6 @@
 #include <atomic>
 #include <cstddef>
 #include <functional>
-#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -13,6 +12,7 @@
 #include "calibrate/search.hpp"
 #include "core/result.hpp"
 #include "ensemble/ensemble_folder.hpp"
+#include "ensemble/fast_model.hpp"
 #include "ensemble/plan.hpp"
 #include "ensemble/predict.hpp"
 #include "ensemble/run_record.hpp"
@@ -22,17 +22,10 @@
 /// Back-analysis: finds the values of a scene that explain field observations, by runs of that scene.
 namespace talus::calibrate {
 
-/// The scene with a faster model, whose runs show where its own runs are worth their time.
-struct FastModel {
-    run::SceneSource source;
-    std::shared_ptr<const scene::Scene> scene;
-    ensemble::PlannedRuns runs;
-};
-
 struct CalibrationPlan {
     std::vector<ensemble::Factor> factors;  ///< free values with ranges or priors
     SearchOptions search;
-    std::optional<FastModel> fast = {};  ///< where search.fast_runs is above 0
+    std::optional<ensemble::FastModel> fast = {};  ///< where search.fast_runs is above 0
 };
 
 struct CalibrationProgress {
@@ -80,10 +73,9 @@ struct CalibrationOptions {
 [[nodiscard]] Result<ensemble::PlannedRuns> plan_calibration(const CalibrationPlan& plan,
                                                              const run::SceneSource& source, const scene::Scene& base);
 
-/// The same runs by the depth-averaged model, for CalibrationPlan::fast. Errors: the scene's model is that one; the
-/// scene is not for it, as load_scene says; as PlannedRuns::make.
-[[nodiscard]] Result<FastModel> plan_fast_model(const CalibrationPlan& plan, const run::SceneSource& source,
-                                                const scene::Scene& base);
+/// The same runs by the depth-averaged model, for CalibrationPlan::fast. Errors: as ensemble::fast_model.
+[[nodiscard]] Result<ensemble::FastModel> plan_fast_model(const CalibrationPlan& plan, const run::SceneSource& source,
+                                                          const scene::Scene& base);
 
 /// The definition that identifies a calibration, for EnsembleFolder::open; `kind`: "calibration", or that of other
 /// runs.

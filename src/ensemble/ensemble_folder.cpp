@@ -55,24 +55,27 @@ Json ensemble_definition(const PlannedRuns& runs, const run::SceneSource& source
     Json factors = Json::array();
     for (const Factor& f : plan.factors)
         factors.push_back({{"key", f.key}, {"distribution", f.distribution.written()}});
-    return {{"program", "talus"},
-            {"kind", "ensemble"},
-            {"program_version", TALUS_VERSION},
-            {"format", format_version},
-            {"scene", scene_name},
-            {"inputs", inputs},
-            {"overrides", source.overrides},
-            {"fixed", runs.fixed()},
-            {"design", design_name(plan.design)},
-            {"seed", plan.seed},
-            {"runs", runs.count()},
-            {"levels", plan.levels},
-            {"factors", factors},
-            {"thresholds",
-             {{"depth_m", plan.thresholds.depth},
-              {"speed_mps", plan.thresholds.speed},
-              {"pressure_kPa", plan.thresholds.pressure}}},
-            {"return_period_years", plan.return_period ? Json(*plan.return_period) : Json()}};
+    Json definition = {{"program", "talus"},
+                       {"kind", "ensemble"},
+                       {"program_version", TALUS_VERSION},
+                       {"format", format_version},
+                       {"scene", scene_name},
+                       {"inputs", inputs},
+                       {"overrides", source.overrides},
+                       {"fixed", runs.fixed()},
+                       {"design", design_name(plan.design)},
+                       {"seed", plan.seed},
+                       {"runs", runs.count()},
+                       {"levels", plan.levels},
+                       {"factors", factors},
+                       {"thresholds",
+                        {{"depth_m", plan.thresholds.depth},
+                         {"speed_mps", plan.thresholds.speed},
+                         {"pressure_kPa", plan.thresholds.pressure}}},
+                       {"return_period_years", plan.return_period ? Json(*plan.return_period) : Json()}};
+    // Without them as earlier versions wrote it, so that their folders can be resumed.
+    if (plan.fast_runs > 0) definition["fast_runs"] = plan.fast_runs;
+    return definition;
 }
 
 std::string difference(const Json& there, const Json& wanted) {
@@ -80,6 +83,9 @@ std::string difference(const Json& there, const Json& wanted) {
         if (is_incidental(key)) continue;
         const Json found = there.contains(key) ? there[key] : Json();
         if (found != value) return fmt::format("{}: {}, not {}", key, shortened(found), shortened(value));
+    }
+    for (const auto& [key, value] : there.items()) {
+        if (!is_incidental(key) && !wanted.contains(key)) return fmt::format("{}: {}, not null", key, shortened(value));
     }
     return "";
 }
@@ -111,6 +117,7 @@ Result<EnsemblePlan> plan_of(const Json& definition) {
         plan.design = design.value_or(stats::DesignKind::latin_hypercube);
         plan.runs = definition.at("runs").get<std::size_t>();
         plan.levels = definition.at("levels").get<std::size_t>();
+        plan.fast_runs = definition.value("fast_runs", std::size_t{0});
         plan.seed = definition.at("seed").get<std::uint64_t>();
         const Json& thresholds = definition.at("thresholds");
         plan.thresholds = {thresholds.at("depth_m").get<std::vector<double>>(),

@@ -108,6 +108,40 @@ std::string distribution_csv(const EnsembleResult& result) {
     return csv.text();
 }
 
+std::string two_models_csv(const TwoModels& both) {
+    products::Csv csv("result,name,particles,particles_error,both,both_error,depth_averaged,factor");
+    for (const std::vector<TwoModelMean>* part : {&both.results, &both.buildings}) {
+        for (const TwoModelMean& m : *part) {
+            csv.word(m.key).word(m.name);
+            csv.row({m.mean.plain, m.mean.plain_error, m.mean.mean, m.mean.error, m.fast_mean, m.mean.factor});
+        }
+    }
+    return csv.text();
+}
+
+/// null where particles alone were run.
+Json two_models_json(const EnsembleResult& result) {
+    if (!result.two_models) return {};
+    const TwoModels& both = *result.two_models;
+    const auto list = [](const std::vector<TwoModelMean>& means) {
+        Json rows = Json::array();
+        for (const TwoModelMean& m : means) {
+            rows.push_back({{"result", m.key},
+                            {"name", m.name},
+                            {"particles", {{"mean", m.mean.plain}, {"standard_error", m.mean.plain_error}}},
+                            {"both", {{"mean", m.mean.mean}, {"standard_error", m.mean.error}}},
+                            {"depth_averaged", m.fast_mean},
+                            {"factor", m.mean.factor}});
+        }
+        return rows;
+    };
+    return {{"pairs", both.pairs},
+            {"fast_complete", both.fast_complete},
+            {"fast_failed", both.fast_failed},
+            {"results", list(both.results)},
+            {"buildings", list(both.buildings)}};
+}
+
 std::string sensitivity_csv(const EnsembleResult& result) {
     const stats::SensitivityKind kind = result.sensitivity.front().kind;
     products::Csv csv(kind == stats::SensitivityKind::variance
@@ -366,7 +400,8 @@ Json statistics_json(const EnsembleResult& result) {
         {"return_period_years", result.runs->plan().return_period ? Json(*result.runs->plan().return_period) : Json()},
         {"intensity_guideline", result.guideline->name},
         {"results", measures},
-        {"buildings", buildings}};
+        {"buildings", buildings},
+        {"two_models", two_models_json(result)}};
 }
 
 Status write_ensemble(const EnsembleResult& result, const fs::path& folder) {
@@ -378,6 +413,9 @@ Status write_ensemble(const EnsembleResult& result, const fs::path& folder) {
     TALUS_TRY(products::write_text_file(folder / "buildings.csv", building_csv(result)));
     TALUS_TRY(products::write_text_file(folder / "distributions.csv", distribution_csv(result)));
     TALUS_TRY(products::write_text_file(folder / "sensitivity.csv", sensitivity_csv(result)));
+    if (result.two_models) {
+        TALUS_TRY(products::write_text_file(folder / "two_models.csv", two_models_csv(*result.two_models)));
+    }
     const Json results = ensemble_results(result);
     TALUS_TRY(products::write_results(results, folder / "results.json"));
     TALUS_ASSIGN(const std::string report, ensemble_report(result, results));

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -10,6 +11,7 @@
 #include "ensemble/hazard_zones.hpp"
 #include "ensemble/plan.hpp"
 #include "ensemble/reduction.hpp"
+#include "ensemble/two_models.hpp"
 #include "report/hazard_map.hpp"
 #include "scene/scene.hpp"
 #include "stats/sensitivity.hpp"
@@ -26,6 +28,7 @@ struct EnsembleResult {
     const report::IntensityGuideline* guideline = nullptr;
     const HazardMatrix* matrix = nullptr;  ///< where the plan has a return period and the guideline has such
     Grid<float> zones;                     ///< of the matrix
+    std::optional<TwoModels> two_models;   ///< where the plan has fast runs; the caller sets it
 
     /// The values of one measure over the complete runs; without NaN.
     [[nodiscard]] std::vector<double> values_of(std::size_t measure) const;
@@ -41,8 +44,8 @@ struct EnsembleResult {
 [[nodiscard]] report::HazardMap intensity_odds_style(const report::IntensityClass& intensity, bool most_severe);
 
 /// Maps (.tif + .qml), hazard_zones.gpkg where there are zones, results.qlr, runs.csv, buildings.csv,
-/// distributions.csv, sensitivity.csv, statistics.json, results.json and report.html into the folder, over those of an
-/// earlier call. Errors name the file and the cause.
+/// distributions.csv, sensitivity.csv, two_models.csv where both were run, statistics.json, results.json and
+/// report.html into the folder, over those of an earlier call. Errors name the file and the cause.
 [[nodiscard]] Status write_ensemble(const EnsembleResult& result, const std::filesystem::path& folder);
 
 /// A factor's effect on a result as statistics.json and results.json have it.

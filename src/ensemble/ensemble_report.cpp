@@ -354,6 +354,36 @@ Json results_of(const EnsembleResult& result) {
     return rows;
 }
 
+/// null where particles alone were run.
+Json two_models_of(const EnsembleResult& result) {
+    if (!result.two_models) return {};
+    const TwoModels& both = *result.two_models;
+    Json rows = table({{"name", "Mean of", ""},
+                       {"particles", "Particles alone", "", "", "n"},
+                       {"both", "With both models", "", "", "n"},
+                       {"fast", "Depth-averaged alone", "", "s3"},
+                       {"narrower", "Standard error saved", "%", "f0"},
+                       {"unit", "Unit", "", "", "", ""}});
+    const auto add = [&](const TwoModelMean& m, const std::string& name, double factor, const std::string& unit) {
+        const auto with_error = [&](double mean, double error) {
+            return fmt::format("{} ± {}", significant(factor * mean, 3), significant(factor * error, 2));
+        };
+        const double saved = m.mean.plain_error > 0 ? 100 * (1 - m.mean.error / m.mean.plain_error) : 0;
+        rows["rows"].push_back({{"name", name},
+                                {"particles", with_error(m.mean.plain, m.mean.plain_error)},
+                                {"both", with_error(m.mean.mean, m.mean.error)},
+                                {"fast", number_or_null<Json>(factor * m.fast_mean)},
+                                {"narrower", saved},
+                                {"unit", unit}});
+    };
+    for (const TwoModelMean& m : both.results) add(m, m.name, 1, m.unit);
+    for (const TwoModelMean& m : both.buildings) {
+        add(m, fmt::format("Hits of {}", m.name.empty() ? "an unnamed building" : m.name), 100, "%");
+    }
+    return {
+        {"table", rows}, {"pairs", both.pairs}, {"fast_runs", both.fast_complete}, {"fast_failed", both.fast_failed}};
+}
+
 Json failed_runs(const EnsembleResult& result) {
     if (result.reduction.failed == 0) return {};
     constexpr std::size_t max_rows = 40;
@@ -401,6 +431,7 @@ Json ensemble_results(const EnsembleResult& result) {
                 {"scatter", scatter_chart(result)},
                 {"sensitivity", sensitivity_data(result)},
                 {"resampled_sets", 500},
+                {"two_models", two_models_of(result)},
                 {"failed_runs", failed_runs(result)},
                 {"largest_standard_error_percent", 50 / std::sqrt(complete)},
                 {"mean_wall_time_s", number_or_null<Json>(mean_wall_time(result))}});

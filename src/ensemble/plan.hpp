@@ -32,8 +32,9 @@ struct Thresholds {
 
 struct EnsemblePlan {
     stats::DesignKind design = stats::DesignKind::latin_hypercube;
-    std::size_t runs = 64;   ///< at most; designs that come in blocks take the largest number that fits
-    std::size_t levels = 5;  ///< per factor of a grid; a list has as many as it has entries
+    std::size_t runs = 64;      ///< at most; designs that come in blocks take the largest number that fits
+    std::size_t levels = 5;     ///< per factor of a grid; a list has as many as it has entries
+    std::size_t fast_runs = 0;  ///< of the depth-averaged model beside those of particles; 0: none
     std::uint64_t seed = 1;
     std::vector<Factor> factors;
     Thresholds thresholds;

@@ -68,13 +68,14 @@ class PlanReader {
                 continue;
             }
             const auto whole = node.value_exact<std::int64_t>();
-            if (key.str() != "runs" && key.str() != "levels" && key.str() != "seed") {
-                return unknown(key, {"design", "runs", "levels", "seed", "return_period_years"});
+            if (key.str() != "runs" && key.str() != "levels" && key.str() != "seed" && key.str() != "fast_runs") {
+                return unknown(key, {"design", "runs", "fast_runs", "levels", "seed", "return_period_years"});
             }
             if (!whole || *whole < 0)
                 return refused(key.source(), what, "is refused; it must be a whole number from 0");
             const auto number = static_cast<std::uint64_t>(*whole);
             if (key.str() == "runs") plan_.runs = number;
+            if (key.str() == "fast_runs") plan_.fast_runs = number;
             if (key.str() == "levels") plan_.levels = number;
             if (key.str() == "seed") plan_.seed = number;
         }

@@ -46,6 +46,51 @@ TEST(Ensemble, ShardsPutTogetherAreTheWholeByteForByte) {
     }
 }
 
+TEST(Ensemble, MeansOfBothModelsAreThoseOfParticlesWithASmallerError) {
+    const SmallScene scene;
+    const ProgramOptions here{.folder = scene.folder()};
+    const std::vector<std::string> two = {"--fast-runs", "24", "--set", "solver.grid_cell_m=2.5", "--json"};
+    const auto outcome = run_program(ensemble_command("two", two, "6"), here);
+    ASSERT_EQ(outcome.exit_code, 0) << outcome.error;
+    const auto both = nlohmann::json::parse(lines_of(outcome.out).back()).at("two_models");
+    EXPECT_EQ(both.at("pairs"), 6);
+    EXPECT_EQ(both.at("fast_complete"), 24);
+    int narrower = 0;
+    for (const auto& row : both.at("results")) {
+        const double plain = row.at("particles").at("standard_error"), error = row.at("both").at("standard_error");
+        EXPECT_LE(error, plain) << row.at("result");
+        narrower += error < 0.8 * plain ? 1 : 0;
+        if (row.at("factor") == 0) EXPECT_EQ(row.at("both"), row.at("particles"));
+    }
+    EXPECT_GT(narrower, 0);
+    EXPECT_THAT(read_text(scene.folder() / "two/report.html"), HasSubstr("Means with the depth-averaged model"));
+    EXPECT_TRUE(fs::exists(scene.folder() / "two/fast/runs/000023.run"));
+    // particles alone, from the same points
+    ASSERT_EQ(run_program(ensemble_command("one", {}, "6"), here).exit_code, 0);
+    EXPECT_EQ(read_text(scene.folder() / "one/distributions.csv"), read_text(scene.folder() / "two/distributions.csv"));
+    EXPECT_FALSE(fs::exists(scene.folder() / "one/two_models.csv"));
+    // evaluated again, without running anything
+    const std::string table = read_text(scene.folder() / "two/two_models.csv");
+    fs::remove(scene.folder() / "two/two_models.csv");
+    ASSERT_EQ(run_program({"ensemble", "merge", "two", "--depth-m", "0.3", "--quiet"}, here).exit_code, 0);
+    EXPECT_EQ(read_text(scene.folder() / "two/two_models.csv"), table);
+}
+
+TEST(Ensemble, SaysWhyItHasNoFastRuns) {
+    const SmallScene scene;
+    const auto refused = [&](const std::vector<std::string>& more) {
+        const auto outcome = run_program(ensemble_command("none", more, "6"), {.folder = scene.folder()});
+        EXPECT_EQ(outcome.exit_code, 2);
+        return outcome.error;
+    };
+    EXPECT_THAT(refused({"--fast-runs", "6"}), HasSubstr("they must be more than the 6 runs of particles"));
+    EXPECT_THAT(refused({"--fast-runs", "24", "--design", "grid"}), HasSubstr("its points are no sample"));
+    EXPECT_THAT(refused({"--fast-runs", "24", "--shard", "1/2"}), HasSubstr("--shard 1/2 is refused"));
+    EXPECT_THAT(refused({"--fast-runs", "24", "--set", "solver.model=depth_averaged"}),
+                HasSubstr("is the faster model itself"));
+    EXPECT_FALSE(fs::exists(scene.folder() / "none"));
+}
+
 TEST(Ensemble, RunsTheDepthAveragedModel) {
     const SmallScene scene;
     const ProgramOptions here{.folder = scene.folder()};
