@@ -166,6 +166,36 @@ Result<std::optional<FastPart>> fast_part(const SceneInput& source, const ensemb
     return std::optional(FastPart{std::move(model), path / "fast", std::move(definition)});
 }
 
+struct Folders {
+    std::optional<ensemble::EnsembleFolder> own, fast;
+};
+
+/// Errors: as EnsembleFolder::open.
+Status open_folders(const fs::path& path, const nlohmann::ordered_json& definition, const std::optional<FastPart>& fast,
+                    Folders& folders) {
+    TALUS_ASSIGN(auto own, ensemble::EnsembleFolder::open(path, definition));
+    folders.own.emplace(std::move(own));
+    if (!fast) return {};
+    TALUS_ASSIGN(auto within, ensemble::EnsembleFolder::open(fast->path, fast->definition));
+    folders.fast.emplace(std::move(within));
+    return {};
+}
+
+/// The runs of the scene, then those of the depth-averaged model, if there are any.
+Result<ensemble::EnsembleOutcome> run_both(const ensemble::PlannedRuns& runs, const run::SceneSource& source,
+                                           const std::optional<FastPart>& fast, const Folders& folders,
+                                           const ensemble::EnsembleOptions& options, ThrottledProgress& reporter) {
+    TALUS_ASSIGN(ensemble::EnsembleOutcome outcome, run_ensemble(runs, source, *folders.own, options));
+    if (outcome.interrupted || !fast) return outcome;
+    reporter.say("runs of the depth-averaged model");
+    TALUS_ASSIGN(const ensemble::EnsembleOutcome more,
+                 run_ensemble(fast->model.runs, fast->model.source, *folders.fast, options));
+    outcome.interrupted = more.interrupted;
+    outcome.done += more.done;
+    outcome.failed += more.failed;
+    return outcome;
+}
+
 /// Evaluates the runs of the folder and writes the results into it.
 int write_results(const SceneInput& source, const ensemble::PlannedRuns& runs, const ensemble::EnsembleFolder& folder,
                   const std::optional<FastPart>& fast, bool quiet, bool json, ThrottledProgress& reporter) {
@@ -237,21 +267,14 @@ int ensemble_command(const EnsembleArguments& arguments) {
                               "mpirun distributes",
                               arguments.shard)});
     }
-    std::optional<ensemble::EnsembleFolder> folder, fast_folder;
+    Folders folders;
     if (ranks.first()) {
-        Result<ensemble::EnsembleFolder> opened = ensemble::EnsembleFolder::open(path, definition);
-        if (opened.ok() && *fast) {
-            Result<ensemble::EnsembleFolder> within =
-                ensemble::EnsembleFolder::open((*fast)->path, (*fast)->definition);
-            if (within.ok()) fast_folder.emplace(*std::move(within));
-            if (!fast_folder) opened = within.error();
-        }
+        const Status opened = open_folders(path, definition, *fast, folders);
         if (!ranks.hear_first(opened.ok())) return fail(exit_code::bad_input, opened.error().message);
-        folder.emplace(*std::move(opened));
     } else {
         if (!ranks.hear_first(false)) return exit_code::bad_input;
-        folder.emplace(ensemble::EnsembleFolder::join(path, definition));
-        if (*fast) fast_folder.emplace(ensemble::EnsembleFolder::join((*fast)->path, (*fast)->definition));
+        folders.own.emplace(ensemble::EnsembleFolder::join(path, definition));
+        if (*fast) folders.fast.emplace(ensemble::EnsembleFolder::join((*fast)->path, (*fast)->definition));
     }
 
     ThrottledProgress reporter(arguments.quiet || !ranks.first(), arguments.json && ranks.first());
@@ -266,19 +289,7 @@ int ensemble_command(const EnsembleArguments& arguments) {
     options.on_refused = [&](const std::string& why) { reporter.note(why); };
     share_threads(arguments, *runs, ranks.count(), options);
 
-    Result<ensemble::EnsembleOutcome> outcome = run_ensemble(*runs, source->source, *folder, options);
-    if (outcome && !outcome->interrupted && fast_folder) {
-        const ensemble::FastModel& model = (*fast)->model;
-        reporter.say("runs of the depth-averaged model");
-        Result<ensemble::EnsembleOutcome> more = run_ensemble(model.runs, model.source, *fast_folder, options);
-        if (!more) {
-            outcome = more.error();
-        } else {
-            outcome->interrupted = more->interrupted;
-            outcome->done += more->done;
-            outcome->failed += more->failed;
-        }
-    }
+    const auto outcome = run_both(*runs, source->source, *fast, folders, options, reporter);
     reporter.clear();
     if (!outcome) (void)fail(exit_code::failure, outcome.error().message);
     const long broken = ranks.sum(outcome ? 0 : 1);
@@ -297,7 +308,7 @@ int ensemble_command(const EnsembleArguments& arguments) {
         return print_result(fmt::format("shard {} is complete: {} runs in {}; talus ensemble merge combines shards\n",
                                         arguments.shard, done, path.string()));
     }
-    return write_results(*source, *runs, *folder, *fast, arguments.quiet, arguments.json, reporter);
+    return write_results(*source, *runs, *folders.own, *fast, arguments.quiet, arguments.json, reporter);
 }
 
 int merge_command(const MergeArguments& arguments) {

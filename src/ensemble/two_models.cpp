@@ -33,7 +33,7 @@ std::optional<TwoModelMean> mean_of(const Pairs& pairs, const Value& value) {
     };
     if (slow.size() < 2 || !known(slow) || !known(fast) || !known(more)) return std::nullopt;
     TwoModelMean made;
-    made.mean = controlled_mean(slow, fast, more);
+    made.mean = stats::controlled_mean(slow, fast, more);
     const auto count = static_cast<double>(fast.size() + more.size());
     for (const std::vector<double>* part : {&fast, &more}) {
         for (const double v : *part) made.fast_mean += v / count;
