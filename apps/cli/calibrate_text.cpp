@@ -17,9 +17,9 @@ using Json = nlohmann::ordered_json;
 
 /// How the two models relate for one observation.
 std::string model_line(const ensemble::ObservedValue& observed, const calibrate::ObservationResult& o) {
-    if (o.pairs == 0) return fmt::format("{:<38}no run of both models has a value\n", observed.name);
-    return fmt::format("{:<38}particles less depth-averaged {:+.3g} +- {:.2g} {} in {} pairs; rho {:.2f}\n",
-                       observed.name, o.model_difference, o.model_spread, observed.unit, o.pairs, o.rho);
+    if (o.pairs == 0) return fmt::format("{:<38}no pair of runs has a value\n", observed.name);
+    return fmt::format("{:<38}{:+.3g} +- {:.2g} {} in {} pairs; rho {:.2f}\n", observed.name, o.model_difference,
+                       o.model_spread, observed.unit, o.pairs, o.rho);
 }
 
 }  // namespace
@@ -27,15 +27,13 @@ std::string model_line(const ensemble::ObservedValue& observed, const calibrate:
 std::string calibration_text(const calibrate::Calibration& c, const std::filesystem::path& folder) {
     const calibrate::CalibrationSummary s = summarise(c);
     const calibrate::SearchResult& r = c.result;
-    std::string text = fmt::format("{} runs, {} failed; {}\nleast misfit {:.3g} in run {}\n\n", r.runs.size(), s.failed,
-                                   r.settled ? "no further gain expected" : "stopped at the maximum number of runs",
-                                   r.runs[*r.best].misfit, *r.best);
-    if (const calibrate::FastRuns& fast = s.fast; fast.made > 0) {
-        text += fmt::format("the above are runs of particles; beside {} of the depth-averaged model, {} failed\n\n",
-                            fast.made, fast.failed);
-        for (std::size_t j = 0; j < s.observations.size(); ++j) text += model_line(c.observed[j], s.observations[j]);
-        text += "\n";
-    }
+    const calibrate::FastRuns& fast = s.fast;
+    const bool two = fast.made > 0;
+    std::string text = fmt::format("{} runs{}, {} failed", r.runs.size(), two ? " of particles" : "", s.failed);
+    if (two) text += fmt::format("; {} of the depth-averaged model, {} failed", fast.made, fast.failed);
+    text += fmt::format("; {}\nleast misfit {:.3g} in run {}\n\n",
+                        r.settled ? "no further gain expected" : "stopped at the maximum number of runs",
+                        r.runs[*r.best].misfit, *r.best);
     text += fmt::format("{:<38}{:>11}{:>11}{:>11}{:>11}{:>12}\n", "factor", "best fit", "median", "95 % from", "to",
                         "width left");
     for (std::size_t k = 0; k < s.factors.size(); ++k) {
@@ -52,6 +50,8 @@ std::string calibration_text(const calibrate::Calibration& c, const std::filesys
                             std::isfinite(o.best) ? fmt::format("{:.4g}", o.best) : "none", o.deviation, o.left_out,
                             c.observed[j].unit);
     }
+    if (two) text += "\nparticles less depth-averaged, where both ran\n";
+    for (std::size_t j = 0; two && j < s.observations.size(); ++j) text += model_line(c.observed[j], s.observations[j]);
     if (!s.warnings.empty()) text += "\n";
     for (const std::string& warning : s.warnings) text += "! " + warning + "\n";
     return text +
