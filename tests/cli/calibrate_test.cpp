@@ -211,7 +211,8 @@ TEST(Calibrate, SearchesWithTheFasterModelAndConfirmsWithParticles) {
     EXPECT_THAT(page, HasSubstr("Two models were run"));
     const auto results = nlohmann::json::parse(read_text(scene.folder() / "two/results.json"));
     EXPECT_EQ(results.at("fast").at("runs"), event.at("fast_runs").at("runs"));
-    EXPECT_THAT(read_text(scene.folder() / "two/best_fit/scene.toml"), testing::Not(HasSubstr("\nmodel = \"depth_averaged\"")));
+    EXPECT_THAT(read_text(scene.folder() / "two/best_fit/scene.toml"),
+                testing::Not(HasSubstr("\nmodel = \"depth_averaged\"")));
 
     // interrupted while the fast model runs, then to the same result
     ProgramOptions options = here;
