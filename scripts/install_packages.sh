@@ -7,7 +7,7 @@ set -euo pipefail
 
 packages=(g++ cmake ninja-build pkg-config git libgdal-dev gdal-bin libtbb-dev libhwy-dev libpng-dev libtomlplusplus-dev libcli11-dev
           nlohmann-json3-dev libfmt-dev libgtest-dev libgmock-dev libboost-dev libssl-dev zlib1g-dev
-          libopenmpi-dev openmpi-bin libnlopt-dev libkainjow-mustache-dev)
+          libopenmpi-dev openmpi-bin libnlopt-dev libkainjow-mustache-dev libmosquitto-dev)
 # Node.js builds the page; like the browser of the tests, it also comes from elsewhere than the distribution's packages.
 node_version=$(node --version 2>/dev/null || echo v0)
 node_version=${node_version#v}
@@ -15,7 +15,7 @@ if ((${node_version%%.*} < 18)); then packages+=(nodejs); fi
 command -v npm >/dev/null || packages+=(npm)
 if [[ ${1:-build} == qgis ]]; then packages+=(qgis python3-qgis python3-gdal python3-numpy); fi
 if [[ ${1:-build} == test ]]; then
-    packages+=(libbenchmark-dev clang-format clang-tidy python3 python3-gdal python3-numpy poppler-utils)
+    packages+=(libbenchmark-dev clang-format clang-tidy python3 python3-gdal python3-numpy poppler-utils mosquitto mosquitto-clients)
     command -v chromium >/dev/null || command -v chromium-browser >/dev/null || command -v google-chrome >/dev/null ||
         packages+=(chromium)
 fi

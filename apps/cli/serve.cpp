@@ -12,6 +12,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "alert_options.hpp"
 #include "command.hpp"
 #include "core/temporary_folder.hpp"
 #include "core/try.hpp"
@@ -40,7 +41,8 @@ struct ServeArguments {
     std::string data;                    ///< value of TALUS_DATA; empty: as in the environment
     std::string calibrations;            ///< a folder that keeps calibrations; empty: they are not kept
     std::vector<std::string> ensembles;  ///< folders of finished ensembles whose maps are shown
-    bool run = false;                    ///< start immediately
+    AlertArguments alerts;
+    bool run = false;  ///< start immediately
     bool quiet = false, json = false;
 };
 
@@ -57,6 +59,10 @@ that browsers use. Connections are not encrypted; where that matters, put a web 
 Programs can use the same interface as the page: docs/protocol.md, or /api/openapi.json of the running server.
   talus serve my_scene.toml --run --json
   curl -H "Authorization: Bearer TOKEN" http://127.0.0.1:8123/api/scenarios/A/state
+
+A scene with [[trigger]] and [[alarm]] starts runs when a program or a gauge says so, and tells others what is coming:
+docs/triggers.md. Both are off unless an option turns them on.
+  talus serve my_scene.toml --trigger-token-file token.txt --mqtt 127.0.0.1 --webhook-file webhook.txt
 
 Exit codes:
     0  ended by Ctrl-C
@@ -118,6 +124,8 @@ int serve_command(const ServeArguments& arguments) {
     if (!settled) return fail(exit_code::bad_input, settled.error().message);
     if (*settled && say) say(cost_text(**settled));
     if (found->unpacked) name_unpacked_files(*loaded, found->unpacked->path(), found->name);
+    auto alerts = read_alerts(arguments.alerts, loaded->spec, *tokens);
+    if (!alerts) return fail(exit_code::bad_input, alerts.error().message);
     if (watch.stop_requested()) return exit_code::success;
     const auto scene = std::make_shared<const scene::Scene>(std::move(*loaded));
 
@@ -146,6 +154,8 @@ int serve_command(const ServeArguments& arguments) {
                         fmt::format("--calibrations {}: cannot be made: {}", arguments.calibrations, error.message()));
         }
     }
+    options.alerts = std::move(*alerts);
+    options.alerts.log = say;
     options.on_failure = [&](const std::string& message) {
         {
             const std::lock_guard lock(mutex);
@@ -213,6 +223,7 @@ void add_serve(CLI::App& program, std::vector<Command>& commands) {
     add_backend(*app, serve->overrides);
     add_layers(*app, serve->layers, true);
     add_data_folder(*app, serve->data);
+    add_alerts(*app, serve->alerts);
     CLI::Option* quiet = app->add_flag("--quiet", serve->quiet, "print only errors");
     app->add_flag("--json", serve->json, "print the links as one JSON object on stdout")->excludes(quiet);
     app->footer(serve_help);

@@ -212,4 +212,8 @@ class Declaration {
 /// The sections of field observations.
 [[nodiscard]] std::vector<Section> declare_observations();
 
+/// What a live run listens to, and what it tells.
+[[nodiscard]] Section declare_trigger();
+[[nodiscard]] Section declare_alarm();
+
 }  // namespace talus::params

@@ -254,6 +254,8 @@ const std::vector<Section>& scene_sections() {
             declare_material(), declare_zone(),      declare_solver(),  declare_outputs()};
         for (Section& section : declare_observations()) all.push_back(std::move(section));
         all.push_back(declare_variant());
+        all.push_back(declare_trigger());
+        all.push_back(declare_alarm());
         return all;
     }();
     return sections;

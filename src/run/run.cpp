@@ -95,7 +95,7 @@ void Run::take_step() {
     }
     if (endless_) return;
     if (!observer_.failed_buildings().empty()) rest_.stir(state().time);
-    const bool waiting = still_waiting(model(), state()) || simulation_.inflow().remaining() > 0;
+    const bool waiting = still_waiting(model(), state()) || inflow_to_come();
     if (rest_.at_rest(state(), waiting)) {
         stop(RunPhase::at_rest, rest_.reason());
     } else {
@@ -111,6 +111,12 @@ void Run::change(const std::function<std::uint32_t(sim::Model&, sim::Ground&, si
     good_ = state();
     rest_.stir(state().time);
     if (phase_ == RunPhase::at_rest) stop(RunPhase::ready, "");
+}
+
+void Run::follow_gauge(std::size_t inflow, const std::vector<params::InflowSample>& hydrograph) {
+    threads_.execute([&] { simulation_.follow_gauge(inflow, hydrograph); });
+    observer_.expect(state().seeded + simulation_.inflow().remaining());
+    rest_.stir(state().time);
 }
 
 RunResult Run::result(const std::string& unfinished) const {

@@ -55,6 +55,8 @@ class Run {
     /// Lets `edit` change model, ground and state, as Simulation::change() does; a run at rest becomes ready again.
     /// `edit` returns the id of the first new particle.
     void change(const std::function<std::uint32_t(sim::Model&, sim::Ground&, sim::State&)>& edit);
+    /// Replaces the hydrograph of an inflow by one that is the same until now.
+    void follow_gauge(std::size_t inflow, const std::vector<params::InflowSample>& hydrograph);
     /// Resets the record of a building, for example after it was moved.
     void forget_building(std::size_t building) { observer_.forget_building(model(), ground(), state(), building); }
 
@@ -79,7 +81,10 @@ class Run {
     [[nodiscard]] bool over();
     void take_step();
     void stop(RunPhase phase, std::string why);
-    [[nodiscard]] bool no_debris() const { return state().count == 0 && simulation_.inflow().remaining() == 0; }
+    [[nodiscard]] bool inflow_to_come() const {
+        return simulation_.inflow().remaining() > 0 || simulation_.inflow().awaits(state().time);
+    }
+    [[nodiscard]] bool no_debris() const { return state().count == 0 && !inflow_to_come(); }
 
     Threads threads_;
     sim::Simulation simulation_;

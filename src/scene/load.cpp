@@ -167,6 +167,7 @@ Result<Scene> assemble_scene(const ParsedScene& parsed) {
     TALUS_TRY(load_barriers(parsed, scene));
     TALUS_TRY(load_flow_path(parsed, scene));
     TALUS_TRY(load_observations(parsed, scene));
+    TALUS_TRY(check_alerts(parsed, scene));
     const bool particles = scene.spec.solver.model == params::ModelChoice::particles;
     TALUS_TRY(particles ? check_limits(parsed, scene) : check_depth_averaged(parsed, scene));
     note_implausible_terrain(scene);

@@ -44,6 +44,9 @@ namespace talus::scene {
 /// note: it is only drawn.
 [[nodiscard]] Status load_observations(const ParsedScene& parsed, Scene& scene);
 
+/// Checks that triggers and alarms name what exists. All of it is loaded.
+[[nodiscard]] Status check_alerts(const ParsedScene& parsed, const Scene& scene);
+
 /// Adds the file, and for a Shapefile the files that belong to it, to scene.inputs.
 void record_input(const std::string& role, const std::string& path, Scene& scene);
 

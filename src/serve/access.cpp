@@ -54,7 +54,8 @@ Result<std::string> random_token() {
 }
 
 Status check_tokens(const Tokens& tokens) {
-    for (const std::string* token : {&tokens.controller, &tokens.viewer}) {
+    for (const std::string* token : {&tokens.controller, &tokens.viewer, &tokens.trigger}) {
+        if (token == &tokens.trigger && token->empty()) continue;
         const bool plain = std::all_of(token->begin(), token->end(), [](unsigned char c) {
             return std::isalnum(c) || c == '_' || c == '-' || c == '.' || c == '~';
         });
@@ -64,6 +65,9 @@ Status check_tokens(const Tokens& tokens) {
         }
     }
     if (tokens.controller == tokens.viewer) return Error{"the tokens of controllers and viewers are the same"};
+    if (tokens.trigger == tokens.controller || tokens.trigger == tokens.viewer) {
+        return Error{"the token of triggers is also that of controllers or viewers"};
+    }
     return {};
 }
 
@@ -107,7 +111,8 @@ bool Access::origin_allowed(std::string_view origin, std::string_view host) cons
 Role Access::role_of(std::string_view token) const {
     const bool controller = same_secret(token, tokens_.controller);
     const bool viewer = same_secret(token, tokens_.viewer);
-    return controller ? Role::controller : viewer ? Role::viewer : Role::nobody;
+    const bool trigger = same_secret(token, tokens_.trigger);
+    return controller ? Role::controller : viewer ? Role::viewer : trigger ? Role::trigger : Role::nobody;
 }
 
 }  // namespace talus::serve

@@ -12,6 +12,7 @@ namespace talus::serve {
 
 struct Tokens {
     std::string controller, viewer;
+    std::string trigger{};  ///< empty: there is none
 };
 
 /// 128 bits from the operating system, as 32 hexadecimal digits. Error: it gave none.
@@ -20,7 +21,7 @@ struct Tokens {
 /// Compares every byte, so that the time does not reveal where the first difference is. An empty secret is no one's.
 [[nodiscard]] bool same_secret(std::string_view given, std::string_view secret);
 
-/// Error if a chosen token is too short, has other characters than A-Z a-z 0-9 _ - . ~, or both are the same.
+/// Error if a chosen token is too short, has other characters than A-Z a-z 0-9 _ - . ~, or two are the same.
 [[nodiscard]] Status check_tokens(const Tokens& tokens);
 
 /// Access control of the server. Host names are checked against a list: an origin equal to the host proves nothing, as

@@ -9,13 +9,15 @@
 
 namespace talus::serve {
 
-Router make_api(Session& session, Exports& exports, const Ensembles& ensembles, Calibrations& calibrations) {
+Router make_api(Session& session, Exports& exports, const Ensembles& ensembles, Calibrations& calibrations,
+                Alerts& alerts) {
     Router router;
     add_session_routes(router, session);
     add_session_file_route(router, session);
     add_scenario_routes(router, session, exports);
     add_ensemble_routes(router, ensembles);
     add_calibration_routes(router, session, calibrations);
+    add_alert_routes(router, alerts);
     return router;
 }
 

@@ -8,9 +8,10 @@
 
 namespace talus::serve {
 
+class Alerts;
 /// The routes of docs/protocol.md. The arguments must outlive them.
 [[nodiscard]] Router make_api(Session& session, Exports& exports, const Ensembles& ensembles,
-                              Calibrations& calibrations);
+                              Calibrations& calibrations, Alerts& alerts);
 
 class Start;
 /// The routes that need no open session. nullptr: a server of one scene, without a start page.
@@ -27,6 +28,7 @@ void add_session_routes(Router& router, Session& session);
 void add_scenario_routes(Router& router, Session& session, Exports& exports);
 void add_ensemble_routes(Router& router, const Ensembles& ensembles);
 void add_calibration_routes(Router& router, Session& session, Calibrations& calibrations);
+void add_alert_routes(Router& router, Alerts& alerts);
 
 /// Calls `act` with the name of the requester if it may make changes now, otherwise answers why not.
 void change(Session& session, const Request& request, const Respond& respond,

@@ -203,11 +203,13 @@ std::optional<Response> HttpConnection::refusal() {
         if (authorization.starts_with(scheme)) token = authorization.substr(scheme.size());
     }
     request_.role = context_.access.role_of(token);
-    if (request_.role >= needs) return too_long();
+    if (may(request_.role, needs)) return too_long();
     if (request_.role == Role::nobody) {
         return error_response(
             401, "a token is needed, as header \"Authorization: Bearer TOKEN\"; the server printed it in its links");
     }
+    if (request_.role == Role::trigger) return error_response(403, "a trigger's token is for POST /api/trigger alone");
+    if (needs == Role::trigger) return error_response(403, "this needs the token of triggers");
     return error_response(403, "a viewer's token only reads; this needs the token of controllers");
 }
 

@@ -10,6 +10,8 @@ const char* role_name(Role role) {
             return "viewer";
         case Role::controller:
             return "controller";
+        case Role::trigger:
+            return "trigger";
         case Role::nobody:
             break;
     }

@@ -10,10 +10,17 @@
 
 namespace talus::serve {
 
-/// Permissions of a token. Ordered: each includes those before it.
-enum class Role { nobody, viewer, controller };
+/// Permissions of a token. Each includes those before it, except that a trigger's has its own route and nothing else:
+/// see may().
+enum class Role { nobody, trigger, viewer, controller };
 
-/// "viewer", "controller", "nobody".
+/// Whether a role suffices where `needs` is asked for.
+[[nodiscard]] constexpr bool may(Role role, Role needs) {
+    if (role == Role::trigger || needs == Role::trigger) return role == needs || needs == Role::nobody;
+    return role >= needs;
+}
+
+/// "viewer", "controller", "trigger", "nobody".
 [[nodiscard]] const char* role_name(Role role);
 
 using Arguments = std::map<std::string, std::string, std::less<>>;

@@ -11,8 +11,9 @@ namespace talus::serve {
 OpenSession::OpenSession(Thread thread, std::shared_ptr<const scene::Scene> scene, const ServerOptions& options)
     : session(std::move(thread), scene, options.tokens),
       exports(session, options.export_folder),
-      calibrations(std::move(scene), options.calibration,
-                   [this](nlohmann::json status) { session.calibration(std::move(status)); }) {}
+      calibrations(scene, options.calibration,
+                   [this](nlohmann::json status) { session.calibration(std::move(status)); }),
+      alerts(session, std::move(scene), options.alerts) {}
 
 Result<OpenSessionPtr> OpenSession::open(Thread thread, const std::shared_ptr<const scene::Scene>& scene,
                                          const ServerOptions& options, std::vector<OpeningScenario> scenarios) {
@@ -21,7 +22,8 @@ Result<OpenSessionPtr> OpenSession::open(Thread thread, const std::shared_ptr<co
     const auto on_failure = options.on_failure ? options.on_failure : [](const std::string&) {};
     TALUS_TRY(made->session.open(options.scenario, on_failure));
     made->session.calibration(made->calibrations.describe());
-    made->router = make_api(made->session, made->exports, made->ensembles, made->calibrations);
+    made->router = make_api(made->session, made->exports, made->ensembles, made->calibrations, made->alerts);
+    TALUS_TRY(made->alerts.open());
     const auto shared = std::make_shared<std::vector<OpeningScenario>>(std::move(scenarios));
     made->session.loop().post([shared, run = options.run](Scenarios& all) {
         for (OpeningScenario& one : *shared) all.put(one.index, std::move(one.scenario), one.title);
@@ -33,6 +35,7 @@ Result<OpenSessionPtr> OpenSession::open(Thread thread, const std::shared_ptr<co
 void OpenSession::close() {
     // Threads end while everything that they notify still exists.
     calibrations.close();
+    alerts.close();
     session.close();
     exports.close();
 }

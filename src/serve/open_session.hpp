@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "serve/alerts.hpp"
 #include "serve/calibrations.hpp"
 #include "serve/ensembles.hpp"
 #include "serve/exports.hpp"
@@ -41,6 +42,7 @@ struct OpenSession {
     Session session;
     Exports exports;
     Calibrations calibrations;
+    Alerts alerts;
     Router router;
 };
 

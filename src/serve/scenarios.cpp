@@ -124,6 +124,18 @@ void Scenarios::tell_names() {
     watcher_.scenarios(names());
 }
 
+/// Of a run that was started again, the alarms of the run before are forgotten.
+void Scenarios::tell_alerts(int index) {
+    Slot& slot = slots_[static_cast<std::size_t>(index)];
+    const json* trigger = slot.scenario->trigger();
+    const std::vector<twin::RaisedAlarm>& alarms = slot.scenario->alarms();
+    if (slot.told_trigger == (trigger != nullptr) && slot.told_alarms == alarms.size()) return;
+    const std::size_t known = alarms.size() < slot.told_alarms ? 0 : slot.told_alarms;
+    slot.told_trigger = trigger != nullptr;
+    slot.told_alarms = alarms.size();
+    watcher_.alerts(index, {trigger != nullptr ? *trigger : json(), alarms, alarms.size() - known});
+}
+
 void Scenarios::tell_setup(int index) {
     Slot& slot = slots_[static_cast<std::size_t>(index)];
     json now = setup(index);
@@ -185,6 +197,7 @@ std::optional<Clock::time_point> Scenarios::work(Clock::time_point now) {
     for (int i = 0; i < max_count; ++i) {
         Slot& slot = slots_[i];
         if (!slot.scenario) continue;
+        tell_alerts(i);
         if (slot.job) {
             slot.state_wanted = slot.state_wanted || now >= slot.next_state;
             wait_for(now + state_interval);

@@ -32,6 +32,13 @@ struct FrameSet {
     std::vector<std::pair<unsigned, twin::FramePtr>> frames;
 };
 
+/// What started a run, and the alarms that it has raised.
+struct RunAlerts {
+    nlohmann::json trigger;  ///< its action; null: people started the run
+    std::vector<twin::RaisedAlarm> alarms;
+    std::size_t news = 0;  ///< of the alarms, the last ones: raised since the last call
+};
+
 /// Notified of changes of the scenarios, on the thread that owns them.
 class Watcher {
   public:
@@ -41,6 +48,7 @@ class Watcher {
     virtual void setup(int scenario, nlohmann::json setup) = 0;
     virtual void done(int scenario, const std::string& by, const std::string& sentence) = 0;
     virtual void scenarios(std::vector<std::string> names) = 0;
+    virtual void alerts(int scenario, RunAlerts alerts) = 0;
 };
 
 /// A scenario that was made from another.
@@ -82,6 +90,17 @@ class Scenarios {
     /// scenario then runs if `from` does, otherwise it is paused. Errors: there are max_count; as of `act`, and then
     /// there is no new scenario.
     void copy(int from, const nlohmann::json& action, const std::string& by, const Answer<Copied>& answer);
+    /// Keeps a place for the runs of triggers, which people cannot take.
+    void reserve_for_triggers() { reserved_ = 1; }
+    /// Starts the scene as its file has it with a trigger's action, in place of an earlier run of a trigger that is
+    /// over or in a free one. Errors: there is no such place; as of twin::read_trigger.
+    void start_by_trigger(const nlohmann::json& action, const std::string& by, const Answer<Copied>& answer);
+    /// Whether there is such a place now.
+    [[nodiscard]] bool has_place(const std::string& trigger) { return place_for(trigger) != nullptr; }
+    /// Puts a value of a gauge in force: as `act`.
+    void follow_gauge(int index, const nlohmann::json& action, const std::string& by, const Answer<twin::Done>& answer);
+    /// The run of a trigger that goes on or is paused; empty: there is none.
+    [[nodiscard]] std::optional<int> run_of(const std::string& trigger) const;
     /// Another scenario, paused, in the place of the one of that index, if there is one.
     void put(int index, std::unique_ptr<twin::Scenario> scenario, const std::string& title);
     /// Error: the first one cannot be removed.
@@ -128,7 +147,9 @@ class Scenarios {
         bool frame_wanted = false, state_wanted = false;
         Clock::time_point next_frame{}, next_state{};
         nlohmann::json told_setup;
-        std::uint32_t ids = 0;  // particle ids in the newest frame
+        std::uint32_t ids = 0;      // particle ids in the newest frame
+        bool told_trigger = false;  // what the watcher knows of its alerts
+        std::size_t told_alarms = 0;
 
         [[nodiscard]] bool ready() const { return scenario && scenario->phase() == run::RunPhase::ready; }
         [[nodiscard]] bool steps() const { return running && ready() && !(job && job->holds); }
@@ -145,6 +166,8 @@ class Scenarios {
     void tell_state(int index, Clock::time_point now);
     void tell_frames(int index, Clock::time_point now);
     void tell_names();
+    void tell_alerts(int index);
+    [[nodiscard]] Slot* place_for(const std::string& trigger);
     void tell_setup(int index);
     [[nodiscard]] Result<twin::Done> set_speed(const nlohmann::json& action);
     [[nodiscard]] Result<twin::Done> steer(const std::string& name, const Slots& slots);
@@ -162,6 +185,7 @@ class Scenarios {
     Watcher& watcher_;
     Elsewhere elsewhere_;
     std::array<Slot, max_count> slots_;
+    int reserved_ = 0;  // places for triggers
     Pace pace_;
 };
 

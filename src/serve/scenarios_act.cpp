@@ -163,7 +163,7 @@ void Scenarios::change(Slot& slot, const json& action, const std::string& by, co
     prepare<Prepared>(
         slot, what, true,
         [scenario, action, by](const sim::Progress& progress) { return scenario->prepare(action, by, progress); },
-        [this, &slot, scenario, by, answer](Result<Prepared> prepared) {
+        [this, &slot, scenario, action, by, answer](Result<Prepared> prepared) {
             if (prepared && slot.scenario != scenario) prepared = Error{"the scenario has ended"};
             if (!prepared) {
                 answer(prepared.error());
@@ -171,7 +171,8 @@ void Scenarios::change(Slot& slot, const json& action, const std::string& by, co
             }
             const twin::Done done = scenario->commit(**prepared);
             tell_setup(index_of(slot));
-            watcher_.done(index_of(slot), by, done.sentence);
+            // A gauge speaks too often to be announced each time.
+            if (action["action"] != "gauge") watcher_.done(index_of(slot), by, done.sentence);
             answer(done);
         });
 }
@@ -205,6 +206,7 @@ void Scenarios::act(int index, const json& action, const std::string& by, const 
     }
     const std::string name = named->get<std::string>();
     if (const Status known = check_keys_of(name, action); !known) return answer(known.error());
+    if (name == "trigger" || name == "gauge") return answer(Error{name + ": comes with the token of triggers alone"});
     Slot& slot = slots_[static_cast<std::size_t>(index)];
     if (name == "set_speed") return answer(set_speed(action));
     if (name == "name_scenario") return answer(give_name(slot, action));
@@ -220,9 +222,14 @@ void Scenarios::act(int index, const json& action, const std::string& by, const 
 
 void Scenarios::copy(int from, const json& action, const std::string& by, const Answer<Copied>& answer) {
     const auto free_slot = [this] {
+        const auto people = std::count_if(slots_.begin(), slots_.end(), [](const Slot& slot) {
+            return slot.scenario && slot.scenario->trigger() == nullptr;
+        });
+        if (people >= max_count - reserved_) return slots_.end();
         return std::find_if(slots_.begin(), slots_.end(), [](const Slot& slot) { return !slot.scenario; });
     };
-    const Error full{fmt::format("there are {} scenarios already, the most there can be; end one first", max_count)};
+    const Error full{fmt::format("there are {} scenarios already, the most there can be{}; end one first",
+                                 max_count - reserved_, reserved_ > 0 ? " beside one that a trigger starts" : "")};
     if (free_slot() == slots_.end()) return answer(full);
     struct Made {
         std::shared_ptr<twin::Scenario> scenario;
@@ -255,11 +262,82 @@ void Scenarios::copy(int from, const json& action, const std::string& by, const 
         });
 }
 
+std::optional<int> Scenarios::run_of(const std::string& trigger) const {
+    for (int i = 0; i < max_count; ++i) {
+        const Slot& slot = slots_[static_cast<std::size_t>(i)];
+        const json* started = slot.scenario ? slot.scenario->trigger() : nullptr;
+        if (started != nullptr && slot.ready() && (*started)["trigger"] == trigger) return i;
+    }
+    return {};
+}
+
+/// Best its own earlier run, then a free one, then that of another trigger; none that still goes on.
+Scenarios::Slot* Scenarios::place_for(const std::string& trigger) {
+    Slot* place = nullptr;
+    int best = 0;
+    for (Slot& slot : slots_) {
+        const json* started = slot.scenario ? slot.scenario->trigger() : nullptr;
+        const bool over = started != nullptr && !slot.ready() && !slot.job;
+        const int fits = over && (*started)["trigger"] == trigger ? 3 : !slot.scenario ? 2 : over ? 1 : 0;
+        if (fits <= best) continue;
+        best = fits;
+        place = &slot;
+    }
+    return place;
+}
+
+void Scenarios::start_by_trigger(const json& action, const std::string& by, const Answer<Copied>& answer) {
+    struct Made {
+        std::shared_ptr<twin::Scenario> scenario;
+        twin::Done done;
+    };
+    const auto made = std::make_shared<Result<Made>>(Error{"the session ends"});
+    const auto open = [opening = slots_[0].scenario->opening(), action, by]() -> Result<Made> {
+        TALUS_ASSIGN(std::shared_ptr<twin::Scenario> scenario, opening({}));
+        TALUS_ASSIGN(const auto prepared, scenario->prepare(action, by));
+        twin::Done done = scenario->commit(*prepared);
+        return Made{std::move(scenario), std::move(done)};
+    };
+    elsewhere_(
+        [made, open](const std::atomic<bool>&) {
+            try {
+                *made = open();
+            } catch (const std::exception& error) {
+                *made = Error{fmt::format("trigger: {}", error.what())};
+            }
+        },
+        [this, made, action, by, answer] {
+            if (!*made) return answer(made->error());
+            const std::string trigger = action["trigger"];
+            Slot* place = place_for(trigger);
+            if (place == nullptr) return answer(Error{"every place for a scenario is taken; end one first"});
+            *place = Slot();
+            place->scenario = (*made)->scenario;
+            place->title = tidy_name(trigger, longest_title);
+            place->running = true;
+            // A gauge measures in real time.
+            if (action.value("values", json::object()).contains("discharge_m3ps")) pace_.set_factor(1.0);
+            start_clock();
+            tell_names();
+            tell_setup(index_of(*place));
+            tell_alerts(index_of(*place));
+            watcher_.done(index_of(*place), by, (*made)->done.sentence);
+            answer(Copied{name_of(index_of(*place)), (*made)->done});
+        });
+}
+
+void Scenarios::follow_gauge(int index, const json& action, const std::string& by, const Answer<twin::Done>& answer) {
+    change(slots_[static_cast<std::size_t>(index)], action, by, answer);
+}
+
 void Scenarios::put(int index, std::unique_ptr<twin::Scenario> scenario, const std::string& title) {
     Slot& slot = slots_[static_cast<std::size_t>(index)];
     slot = Slot();
     slot.scenario = std::move(scenario);
     slot.title = title;
+    slot.told_alarms = slot.scenario->alarms().size();  // of a saved session: nobody is warned of them again
+    slot.told_trigger = slot.scenario->trigger() != nullptr;
+    watcher_.alerts(index, {slot.told_trigger ? *slot.scenario->trigger() : json(), slot.scenario->alarms(), 0});
     tell_names();
     start_clock();
 }
@@ -268,6 +346,7 @@ Status Scenarios::remove(int index) {
     if (index == 0) return Error{"scenario A stays; the others can be ended"};
     const Slot ended = std::exchange(slots_[static_cast<std::size_t>(index)], Slot());
     for (const Waiting& change : ended.waiting) change.refuse(Error{"the scenario has ended"});
+    watcher_.alerts(index, {});
     start_clock();
     tell_names();
     return {};

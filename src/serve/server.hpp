@@ -11,6 +11,7 @@
 #include "core/result.hpp"
 #include "scene/scene.hpp"
 #include "serve/access.hpp"
+#include "serve/alerts.hpp"
 #include "serve/calibrations.hpp"
 #include "serve/draft.hpp"
 #include "serve/router.hpp"
@@ -29,6 +30,7 @@ struct ServerOptions {
     bool run = false;                              ///< start immediately
     CalibrationSettings calibration;               ///< without a scene file there are none
     std::vector<std::filesystem::path> ensembles;  ///< folders of finished ensembles whose maps are shown
+    AlertSettings alerts;                          ///< triggers and alarms; neither unless set
     std::function<void(std::string)> on_failure;   ///< the simulation cannot continue: out of memory; from any thread
     std::size_t connections_per_address = 0;       ///< at once; 0: a third of what the system allows in all
 };

@@ -82,6 +82,7 @@ void Session::join(Viewer& viewer, Role role, const std::string& name, const std
         if (states_[i]) viewer.send(states_[i]);
     }
     if (calibration_) viewer.send(calibration_);
+    if (alerts_) viewer.send(alerts_);
     people_changed();
 }
 
@@ -256,6 +257,19 @@ void Session::calibration(json status) {
     thread_.post([this, text = message_text("calibration", std::move(status))] {
         calibration_ = text;
         for (const auto& [viewer, view] : viewers_) viewer->send(text);
+    });
+}
+
+void Session::alerts(json status) {
+    thread_.post([this, text = message_text("alerts", std::move(status))] {
+        alerts_ = text;
+        for (const auto& [viewer, view] : viewers_) viewer->send(text);
+    });
+}
+
+void Session::alerts(int scenario, RunAlerts alerts) {
+    thread_.post([this, scenario, alerts = std::move(alerts)] {
+        if (on_alerts_) on_alerts_(scenario, alerts);
     });
 }
 

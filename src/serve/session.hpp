@@ -71,12 +71,20 @@ class Session final : public Watcher {
     /// Sends the state of a calibration to everybody, also to those who join later; from any thread.
     void calibration(nlohmann::json status);
 
+    /// Sends the state of triggers and alarms in the same way.
+    void alerts(nlohmann::json status);
+    /// Who is told, on the server's thread, of the alerts of runs.
+    void on_alerts(std::function<void(int scenario, const RunAlerts&)> listener) { on_alerts_ = std::move(listener); }
+    /// For the server's thread, from any other.
+    void post(std::function<void()> task) { thread_.post(std::move(task)); }
+
     // Watcher, from the loop's thread.
     void frames(FrameSet set) override;
     void state(int scenario, nlohmann::json state) override;
     void setup(int scenario, nlohmann::json setup) override;
     void done(int scenario, const std::string& by, const std::string& sentence) override;
     void scenarios(std::vector<std::string> names) override;
+    void alerts(int scenario, RunAlerts alerts) override;
 
   private:
     /// What a viewer wants to see.
@@ -103,7 +111,8 @@ class Session final : public Watcher {
     std::map<Viewer*, View> viewers_;
     std::vector<std::string> names_{"A"};
     std::array<Bytes, Scenarios::max_count> states_, setups_;  // as messages; for those who join
-    Bytes calibration_;                                        // likewise
+    Bytes calibration_, alerts_;                               // likewise
+    std::function<void(int, const RunAlerts&)> on_alerts_;
     std::vector<Audience> audience_;
     /// Encoded frames, by cap.
     using Packed = std::vector<std::pair<unsigned, Bytes>>;

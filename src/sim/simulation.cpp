@@ -124,6 +124,17 @@ void Simulation::inject_inflow(StepWatcher* watcher) {
     if (watcher != nullptr) watcher->follow_inflow(state_, first);
 }
 
+void Simulation::follow_gauge(std::size_t inflow, const std::vector<params::InflowSample>& hydrograph) {
+    inflow_.set_hydrograph(inflow, hydrograph);
+    expected_ = inflow_.remaining();
+    // With spare capacity: a gauge speaks often, and growing reallocates everything.
+    const std::uint32_t count = state_.count + expected_;
+    if (count <= capacity_) return;
+    fetch();
+    make_room(count + count / 2);
+    device_is_older_ = true;
+}
+
 Status Simulation::entrain_bed() {
     if (ground_.bed.empty()) return {};
     fetch();

@@ -37,6 +37,9 @@ class Simulation {
     /// must not change terrain, particle spacing, kernel or time. The contacts of the last step are dropped.
     void change(const std::function<void(Model&, Ground&, State&)>& edit);
 
+    /// Replaces the hydrograph of an inflow between two steps by one that is the same until now. Contacts stay.
+    void follow_gauge(std::size_t inflow, const std::vector<params::InflowSample>& hydrograph);
+
     [[nodiscard]] const Model& model() const { return model_; }
     [[nodiscard]] const Ground& ground() const { return ground_; }
     /// After steps on a device its particles are copied back first, so not from several threads at once. Throws a

@@ -179,4 +179,15 @@ PlanPoint FlowPath::point_at(double chainage) const {
     return {a.x + share * (b.x - a.x), a.y + share * (b.y - a.y)};
 }
 
+std::optional<double> first_chainage(const FlowPath& path, const std::vector<Polygon>& outlines) {
+    std::optional<double> first;
+    for (const Polygon& outline : outlines) {
+        for (const PlanPoint& corner : outline.outer) {
+            const auto place = path.locate(corner);
+            if (place && (!first || place->chainage < *first)) first = place->chainage;
+        }
+    }
+    return first;
+}
+
 }  // namespace talus::terrain

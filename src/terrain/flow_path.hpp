@@ -79,6 +79,9 @@ class FlowPath {
     std::vector<Extent> extent_beyond_;  // by chainage in cells of the table
 };
 
+/// The smallest chainage of a corner of the outlines; empty: all lie outside the corridor.
+[[nodiscard]] std::optional<double> first_chainage(const FlowPath& path, const std::vector<Polygon>& outlines);
+
 /// Steepest descent (D8) from `start` over a sink-filled copy of the elevations, to the edge of the data, to a place
 /// below which nothing can be reached (the sea, the bottom of a closed basin) or to `longest` metres. Sinks are filled
 /// by priority flood (Barnes, Lehman, Mulla 2014). The steps from cell to cell are smoothed, because their zigzag would

@@ -11,17 +11,18 @@ namespace talus::twin {
 Result<std::unique_ptr<LiveRun>> LiveRun::start(const scene::Scene& scene, const Setup& setup, double spacing,
                                                 const ScenarioOptions& options, const sim::Progress& progress) {
     TALUS_ASSIGN(auto run, run::Run::start(scene_of(scene, setup), spacing, progress));
-    return std::unique_ptr<LiveRun>(new LiveRun(std::move(run), scene.spec.outputs.deposited_speed, setup, options));
+    return std::unique_ptr<LiveRun>(new LiveRun(std::move(run), scene, setup, options));
 }
 
-LiveRun::LiveRun(std::unique_ptr<run::Run> run, double deposited_speed, Setup setup, const ScenarioOptions& options)
+LiveRun::LiveRun(std::unique_ptr<run::Run> run, const scene::Scene& scene, Setup setup, const ScenarioOptions& options)
     : run_(std::move(run)),
       begun_with_(std::move(setup)),
       setup_(begun_with_),
       slots_(run_->state().seeded),
       recording_(options.frame_interval, options.recording_bytes),
       clock_(run_->model().solver),
-      deposited_speed_(deposited_speed) {
+      deposited_speed_(scene.spec.outputs.deposited_speed),
+      alarms_(scene) {
     for (const ReleaseSetup& release : setup_.releases) groups_.push_back({release.id, false});
     for (const BuildingSetup& building : setup_.buildings) obstacles_.push_back({building.id, building.body});
     for (const BarrierSetup& barrier : setup_.barriers) obstacles_.push_back({barrier.id, barrier.body, true});
@@ -73,6 +74,7 @@ void LiveRun::advance() {
     if (!stepped) return;
     note_failed();
     record();
+    alarms_.check(*this);
     // Where steps wait for real time, looks between them are as cheap as these are slow.
     const auto now = std::chrono::steady_clock::now();
     constexpr double longest_step = 1;  // s; what takes longer is a pause
@@ -109,6 +111,21 @@ observe::BuildingImpact LiveRun::impact_on(const std::string& obstacle_id, std::
     observe::BuildingImpact impact = impact_history_.at(k, *time);
     impact.name = observer().impacts()[k].name;
     return impact;
+}
+
+const observe::BuildingImpact* LiveRun::measured_on(const std::string& obstacle_id) const {
+    const Obstacle* obstacle = find_id(obstacles_, obstacle_id);
+    if (obstacle == nullptr) return nullptr;
+    return &observer().impacts()[static_cast<std::size_t>(obstacle - obstacles_.data())];
+}
+
+void LiveRun::follow_gauge(const std::string& inflow_id, const std::shared_ptr<const terrain::Inflow>& body) {
+    InflowSetup* begun = find_id(begun_with_.inflows, inflow_id);
+    run_->follow_gauge(static_cast<std::size_t>(begun - begun_with_.inflows.data()), body->hydrograph);
+    for (InflowSetup* entry : {begun, find_id(setup_.inflows, inflow_id)}) {
+        entry->body = body;
+        entry->as_in_scene = false;
+    }
 }
 
 std::vector<float> LiveRun::eroded(std::optional<double> time) const {

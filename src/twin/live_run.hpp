@@ -11,6 +11,7 @@
 #include "run/forecast.hpp"
 #include "run/run.hpp"
 #include "scene/scene.hpp"
+#include "twin/alarms.hpp"
 #include "twin/erosion_history.hpp"
 #include "twin/impact_history.hpp"
 #include "twin/recording.hpp"
@@ -37,6 +38,8 @@ class LiveRun {
     /// inflows remain those of the start: see begun_with(). Errors: too many particles, a release smaller than a
     /// particle; then nothing is changed.
     [[nodiscard]] Status bring_to(const Setup& next);
+    /// Puts in force an inflow of begun_with() whose hydrograph is the same until now.
+    void follow_gauge(const std::string& inflow_id, const std::shared_ptr<const terrain::Inflow>& body);
 
     [[nodiscard]] const Setup& setup() const { return setup_; }
     [[nodiscard]] const Setup& begun_with() const { return begun_with_; }
@@ -64,6 +67,10 @@ class LiveRun {
     /// Impact on an obstacle of the setup, until now or until a time of the recording.
     [[nodiscard]] observe::BuildingImpact impact_on(const std::string& obstacle_id,
                                                     std::optional<double> time = {}) const;
+    /// What is measured on it so far, without the debris that a barrier holds; nullptr: there is none.
+    [[nodiscard]] const observe::BuildingImpact* measured_on(const std::string& obstacle_id) const;
+    /// Those raised so far.
+    [[nodiscard]] const std::vector<RaisedAlarm>& alarms() const { return alarms_.raised(); }
     /// m by cell of the terrain, as Bed::eroded, now or at a time of the recording; empty: no erosion.
     [[nodiscard]] std::vector<float> eroded(std::optional<double> time = {}) const;
 
@@ -95,7 +102,7 @@ class LiveRun {
         std::uint64_t until_step = 0;    ///< of a removed one, like the next
         observe::BuildingImpact last{};  ///< at its removal
     };
-    LiveRun(std::unique_ptr<run::Run> run, double deposited_speed, Setup setup, const ScenarioOptions& options);
+    LiveRun(std::unique_ptr<run::Run> run, const scene::Scene& scene, Setup setup, const ScenarioOptions& options);
 
     [[nodiscard]] run::Outlook outlook() const;
 
@@ -122,6 +129,7 @@ class LiveRun {
     double going_ = 0;  ///< s of wall time, pauses left out
     ImpactHistory impact_history_;
     ErosionHistory erosion_history_;
+    AlarmWatch alarms_;
 };
 
 }  // namespace talus::twin

@@ -39,4 +39,8 @@ namespace talus::twin {
                                                   const Setup& setup, const InflowSetup* existing,
                                                   const std::string& name);
 
+/// Particles of all sources of debris, with this inflow in place of `existing`; `spacing` in m.
+[[nodiscard]] double particles_in_all(const Setup& setup, const InflowSetup* existing, const terrain::Inflow& inflow,
+                                      double spacing);
+
 }  // namespace talus::twin

@@ -47,7 +47,8 @@ Status read_place(const json& action, const terrain::Terrain& terrain, bool exis
     return over_area ? Status() : scene::check_line(inflow, terrain, drawn.by ? "move_m" : "line");
 }
 
-/// Particles of all sources of debris, with this inflow in place of `existing`.
+}  // namespace
+
 double particles_in_all(const Setup& setup, const InflowSetup* existing, const terrain::Inflow& inflow,
                         double spacing) {
     double volume = inflow.volume();
@@ -57,8 +58,6 @@ double particles_in_all(const Setup& setup, const InflowSetup* existing, const t
     for (const ReleaseSetup& release : setup.releases) volume += release.body->volume;
     return volume / std::pow(spacing, 3);
 }
-
-}  // namespace
 
 Result<terrain::Inflow> read_inflow(const json& action, const ActionContext& context, const Setup& setup,
                                     const InflowSetup* existing, const std::string& name) {

@@ -16,6 +16,7 @@
 #include "twin/json_keys.hpp"
 #include "twin/scenario_parts.hpp"
 #include "twin/setup_file.hpp"
+#include "twin/trigger.hpp"
 
 namespace talus::twin {
 namespace {
@@ -146,6 +147,16 @@ std::function<Result<std::unique_ptr<Scenario>>(const sim::Progress&)> Scenario:
     };
 }
 
+std::function<Result<std::unique_ptr<Scenario>>(const sim::Progress&)> Scenario::opening() const {
+    return [scene = parts_->scene, options = parts_->options](const sim::Progress& progress) {
+        using Made = Result<std::unique_ptr<Scenario>>;
+        auto parts = std::make_unique<Parts>(scene, options);
+        const Setup setup = setup_of(*scene, parts->next);
+        const Status started = parts->start(setup, progress);
+        return started ? Made(std::unique_ptr<Scenario>(new Scenario(std::move(parts)))) : Made(started.error());
+    };
+}
+
 void Scenario::advance() {
     Parts& p = *parts_;
     const bool ready = phase() == run::RunPhase::ready;
@@ -199,11 +210,40 @@ Result<std::shared_ptr<Scenario::Prepared>> Scenario::prepare(const json& action
     }
     const ActionContext context{*p.scene, p.particle_spacing, p.run->model().viscosity,
                                 [&](const std::string& id) { return p.run->has_begun(id); }, p.run->state().step > 0};
-    TALUS_ASSIGN(Edit made, read_action(action, p.setup(), prepared->next, context));
+    if (name == "gauge") {
+        TALUS_ASSIGN(prepared->gauge, p.prepare_gauge(action, context));
+        prepared->done = {prepared->gauge->sentence, ""};
+        return prepared;
+    }
+    TALUS_ASSIGN(Edit made, name == "trigger" ? read_trigger(action, p.setup(), context)
+                                              : read_action(action, p.setup(), prepared->next, context));
     TALUS_TRY(p.prepare(made.setup, *prepared, progress));
     prepared->by_trigger = name == "trigger_release";
     prepared->done = {made.sentence, made.created};
     return prepared;
+}
+
+Result<GaugeReading> Scenario::Parts::prepare_gauge(const json& action, const ActionContext& context) const {
+    if (run->phase() != run::RunPhase::ready) return Error{"the run is over: " + run->message()};
+    double last = -1;
+    for (const JournalEntry& entry : entries) {
+        if (entry.action["action"] == "trigger") last = std::max(last, 0.0);
+        if (entry.action["action"] == "gauge") last = entry.action["time_s"];
+    }
+    return read_gauge(action, setup(), run->begun_with(), context, run->state().time, last);
+}
+
+void Scenario::Parts::follow_gauge(const GaugeReading& reading) {
+    const auto before = find_id(setup().inflows, reading.inflow_id)->body;
+    run->follow_gauge(reading.inflow_id, reading.body);
+    for (std::vector<Past>* pasts : {&undo, &redo}) {
+        for (Past& past : *pasts) {
+            InflowSetup* inflow = find_id(past.setup.inflows, reading.inflow_id);
+            if (inflow == nullptr || inflow->body != before) continue;
+            inflow->body = reading.body;
+            inflow->as_in_scene = false;
+        }
+    }
 }
 
 /// What can be undone and redone after a change.
@@ -231,8 +271,19 @@ Done Scenario::commit(Prepared& prepared) {
         p.redo = held_again(std::move(p.redo));
         return prepared.done;
     }
-    p.keep_past(prepared);
     JournalEntry entry{step(), prepared.by, prepared.action, nullptr};
+    if (prepared.gauge) {
+        p.follow_gauge(*prepared.gauge);
+        p.entries.push_back(std::move(entry));
+        ++p.revision;
+        return prepared.done;
+    }
+    if (name == "trigger") {
+        p.undo.clear();
+        p.redo.clear();
+    } else {
+        p.keep_past(prepared);
+    }
     p.carry_out(prepared);
     p.next = prepared.next;
     if (name == "undo" || name == "redo") entry.setup = write_setup(p.setup());
@@ -290,6 +341,17 @@ const sim::State& Scenario::state() const {
 }
 const observe::Observer& Scenario::observer() const {
     return parts_->run->observer();
+}
+
+const std::vector<RaisedAlarm>& Scenario::alarms() const {
+    return parts_->run->alarms();
+}
+
+const json* Scenario::trigger() const {
+    const auto& entries = parts_->entries;
+    const auto found = std::find_if(entries.begin(), entries.end(),
+                                    [](const JournalEntry& entry) { return entry.action["action"] == "trigger"; });
+    return found == entries.end() ? nullptr : &found->action;
 }
 
 FramePtr Scenario::frame(unsigned stride, unsigned flags) const {

@@ -20,6 +20,7 @@
 #include "sim/model.hpp"
 #include "sim/relax.hpp"
 #include "sim/state.hpp"
+#include "twin/alarms.hpp"
 #include "twin/frame.hpp"
 
 namespace talus::twin {
@@ -64,13 +65,16 @@ class Scenario {
     [[nodiscard]] Result<std::unique_ptr<Scenario>> copy() const { return copying()({}); }
     /// The work of that, for any thread, while this scenario continues.
     [[nodiscard]] std::function<Result<std::unique_ptr<Scenario>>(const sim::Progress&)> copying() const;
+    /// The work of opening the scene as its file has it, without anybody's changes, for any thread.
+    [[nodiscard]] std::function<Result<std::unique_ptr<Scenario>>(const sim::Progress&)> opening() const;
     ~Scenario();
     Scenario(const Scenario&) = delete;
     Scenario& operator=(const Scenario&) = delete;
 
     /// Takes one step, observers and recording included. Nothing happens unless phase() is ready.
     void advance();
-    /// Any action of docs/protocol.md that changes results: not run, pause, step, set_speed. Errors name key, value and
+    /// Any action of docs/protocol.md that changes results: not run, pause, step, set_speed. Also those of triggers and
+    /// gauges (trigger.hpp). Errors name key, value and
     /// allowed range; then nothing is changed.
     [[nodiscard]] Result<Done> apply(const nlohmann::json& action, const std::string& by);
     /// The part of it that can fail or takes long, for any thread. Until commit() the scenario must neither advance nor
@@ -93,6 +97,11 @@ class Scenario {
     [[nodiscard]] const sim::Model& model() const;
     [[nodiscard]] const sim::State& state() const;
     [[nodiscard]] const observe::Observer& observer() const;
+
+    /// Raised by the run so far.
+    [[nodiscard]] const std::vector<RaisedAlarm>& alarms() const;
+    /// The action of the trigger that started this run; nullptr: people did.
+    [[nodiscard]] const nlohmann::json* trigger() const;
 
     // Answers, as docs/protocol.md has them. They lack `scenario`, which only the loop knows; state_json() also lacks
     // speed_factor, real_time_factor, steps_per_second, and its "status" is phase_name(phase()).

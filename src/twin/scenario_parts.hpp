@@ -1,13 +1,16 @@
 #pragma once
 
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "twin/action.hpp"
 #include "twin/journal.hpp"
 #include "twin/live_run.hpp"
 #include "twin/scenario.hpp"
 #include "twin/setup.hpp"
+#include "twin/trigger.hpp"
 
 namespace talus::twin {
 
@@ -20,6 +23,7 @@ struct Scenario::Prepared {
     bool by_trigger = false;
     std::shared_ptr<LiveRun::Change> change;
     std::unique_ptr<LiveRun> anew;
+    std::optional<GaugeReading> gauge;  ///< in place of both
 };
 
 /// Shared by scenario*.cpp.
@@ -62,6 +66,9 @@ struct Scenario::Parts {
     /// The change of the run to a setup. Beds and inflows apply immediately only before the first step.
     [[nodiscard]] Status prepare(const Setup& next, Prepared& prepared, const sim::Progress& progress) const;
     void carry_out(Prepared& prepared);
+    [[nodiscard]] Result<GaugeReading> prepare_gauge(const nlohmann::json& action, const ActionContext& context) const;
+    /// Also in the setups that can be undone to: what a gauge has measured is not undone.
+    void follow_gauge(const GaugeReading& reading);
     void keep_past(Prepared& prepared);
     /// The scene with the present setup, and the result of the run so far.
     [[nodiscard]] std::pair<scene::Scene, run::RunResult> outcome() const;

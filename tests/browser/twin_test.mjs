@@ -17,6 +17,7 @@ import { testReadings } from "./twin/readings.mjs";
 import { testScenarios } from "./twin/scenarios.mjs";
 import { testSharing } from "./twin/sharing.mjs";
 import { testStart } from "./twin/start.mjs";
+import { testTriggers } from "./twin/triggers.mjs";
 
 const [, , output, ...command] = process.argv;
 const browserPath = process.env.TALUS_BROWSER ?? "/usr/bin/chromium";
@@ -38,7 +39,7 @@ const browser = await chromium.launch({ executablePath: browserPath, args: ["--h
   "--disable-component-update", "--no-first-run"] });
 const run = new Run(browser, resolve(output), command, process.env.TALUS_ONLY);
 const parts = { controls: testControls, readings: testReadings, scenarios: testScenarios, barrier: testBarrier, parts: testParts, erosion: testErosion, ground: testGround, look: testLook, photo: testPhoto,
-  backanalysis: testBackanalysis, sharing: testSharing, start: testStart };
+  backanalysis: testBackanalysis, sharing: testSharing, start: testStart, triggers: testTriggers };
 try {
   for (const part of (process.env.TALUS_PARTS ?? Object.keys(parts).join()).split(",")) {
     if (!parts[part]) throw new Error(`TALUS_PARTS names ${part}; there are ${Object.keys(parts).join(", ")}`);

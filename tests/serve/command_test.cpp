@@ -160,5 +160,34 @@ TEST(ServeCommand, help_teaches) {
     }
 }
 
+TEST(ServeCommand, refuses_triggers_and_alarms_that_cannot_be_used_without_repeating_secrets) {
+    const SmallScene scene;
+    const auto said = [&](const std::vector<std::string>& arguments) {
+        std::vector<std::string> all{"serve", "slope.toml", "--port", "0"};
+        all.insert(all.end(), arguments.begin(), arguments.end());
+        ProgramOptions options;
+        options.folder = scene.folder();
+        const auto outcome = run_program(all, options);
+        EXPECT_EQ(outcome.exit_code, 2);
+        return outcome.error;
+    };
+    write_text(scene.input("token.txt"), "secret-1\n");
+    write_text(scene.input("hook.txt"), "gopher://secret-2\n");
+    EXPECT_THAT(said({"--trigger-token-file", "token.txt"}), HasSubstr("no [[trigger]]"));
+    EXPECT_THAT(said({"--webhook-file", "hook.txt"}), HasSubstr("no [[alarm]]"));
+    EXPECT_THAT(said({"--mqtt", "127.0.0.1"}), HasSubstr("neither [[trigger]] nor [[alarm]]"));
+    EXPECT_THAT(said({"--mqtt-topic", "valley"}), HasSubstr("--mqtt"));
+    scene.write(SmallScene::text() +
+                "[[trigger]]\nname = \"slope\"\n[[alarm]]\nname = \"a\"\nchainage_m = 5\ndistance_m = 1\n");
+    EXPECT_THAT(said({"--trigger-token-file", "nothing.txt"}),
+                HasSubstr("--trigger-token-file nothing.txt: no such file"));
+    const std::string token = said({"--trigger-token-file", "token.txt"}), hook = said({"--webhook-file", "hook.txt"});
+    EXPECT_THAT(token, HasSubstr("16 to 128"));
+    EXPECT_THAT(hook, HasSubstr("https:// or http://"));
+    EXPECT_EQ((token + hook).find("secret"), std::string::npos);
+    EXPECT_THAT(said({"--mqtt", "host:0"}), HasSubstr("HOST or HOST:PORT"));
+    EXPECT_THAT(said({"--mqtt", "host", "--mqtt-login-file", "token.txt"}), HasSubstr("password on its"));
+}
+
 }  // namespace
 }  // namespace talus::test

@@ -22,6 +22,7 @@ struct Nobody : Watcher {
     void setup(int, json) override {}
     void done(int, const std::string&, const std::string&) override {}
     void scenarios(std::vector<std::string>) override {}
+    void alerts(int, RunAlerts) override {}
 };
 
 /// Changes are prepared when the test says so.

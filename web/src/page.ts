@@ -4,6 +4,7 @@ import "uplot/dist/uPlot.min.css";
 import { Probes } from "./charts/probes";
 import { sectionPanel } from "./charts/section";
 import { frontCharts, timeCharts } from "./charts/series_charts";
+import { alarmsPanel, triggerBanner } from "./panels/alerts";
 import { calibratePanel } from "./panels/calibrate";
 import { ComparePanel } from "./panels/compare";
 import { exportButtons } from "./panels/exports";
@@ -75,11 +76,22 @@ function buildPage(page: HTMLElement, twin: Twin): void {
     { name: "balance", title: "Balance", content: balance(twin) },
     { name: "compare", title: "Compare", content: compare.element, onshow: () => compare.open() },
     { name: "calibrate", title: "Calibrate", content: calibratePanel(twin) },
+    { name: "alarms", title: "Alarms", content: alarmsPanel(twin) },
   ]);
   twin.probes.watch((list) => {
     if (list.length > 0) readings.show("points");
   });
   watchAll([twin.shown], () => readings.offer("compare", twin.shown.value.length > 1));
+  watchAll([twin.alerts], () => {
+    const alerts = twin.alerts.value;
+    readings.offer("alarms", alerts !== null && alerts.triggers.length + alerts.alarms.length + alerts.notes.length > 0);
+  });
+  let alarms = 0;
+  twin.alerts.watch((alerts) => {
+    const raised = alerts?.alarms.length ?? 0;
+    if (raised > alarms) readings.show("alarms");
+    alarms = raised;
+  });
   twin.section.watch((line) => {
     if (line) readings.show("section");
   });
@@ -112,7 +124,7 @@ function buildPage(page: HTMLElement, twin: Twin): void {
   const scale = scaleAndCompass(twin, stage, readOut);
   stage.covers = [bar.camera, bar.show, scale];
   // Legends stand below the picture: over it they would hide debris and houses.
-  const middle = h("main", { class: "middle" }, h("div", { class: "view" }, stage.element, bar.camera, bar.show, scale), key);
+  const middle = h("main", { class: "middle" }, triggerBanner(twin), h("div", { class: "view" }, stage.element, bar.camera, bar.show, scale), key);
   // Names of the two views stand below the bars, which wrap on a narrow page.
   new ResizeObserver(() => middle.style.setProperty("--bars", `${bar.show.offsetTop + bar.show.offsetHeight}px`)).observe(bar.show);
   page.replaceChildren(

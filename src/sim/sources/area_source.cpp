@@ -66,6 +66,12 @@ void AreaSource::place_sites(const LocalFrame& frame) {
     first_.resize(static_cast<std::size_t>(columns_) * static_cast<std::size_t>(rows_));
 }
 
+void AreaSource::set_hydrograph(const std::vector<params::InflowSample>& hydrograph) {
+    inflow_.hydrograph = hydrograph;
+    total_ = std::max(static_cast<std::uint32_t>(std::lround(inflow_.volume() / particle_volume_)), injected_);
+    gauged_ = true;
+}
+
 bool AreaSource::due(double time) const {
     if (injected_ == total_ || time < inflow_.hydrograph.front().time) return false;
     return time >= inflow_.hydrograph.back().time || inflow_.volume_until(time) >= (injected_ + 0.5) * particle_volume_;

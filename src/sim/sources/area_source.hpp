@@ -21,6 +21,9 @@ class AreaSource {
     /// Particles still to be injected.
     [[nodiscard]] std::uint32_t remaining() const { return total_ - injected_; }
     [[nodiscard]] bool due(double time) const;
+    /// As in InflowFeeder.
+    [[nodiscard]] bool awaits(double time) const { return gauged_ && time < inflow_.hydrograph.back().time; }
+    void set_hydrograph(const std::vector<params::InflowSample>& hydrograph);
     /// Injects what is due at the state's time; the state's arrays must have room.
     void inject(const Model& model, const Ground& ground, State& state);
 
@@ -43,6 +46,7 @@ class AreaSource {
     terrain::Inflow inflow_;
     double spacing_ = 0, particle_volume_ = 0;
     std::uint32_t total_ = 0, injected_ = 0;
+    bool gauged_ = false;   ///< its hydrograph is that of a gauge
     double last_time_ = 0;  ///< s, of the last injection
     std::vector<LocalPoint> sites_;
     std::size_t site_ = 0, stride_ = 1;  ///< the next site, and the increment to the one after it

@@ -11,6 +11,7 @@ namespace talus::sim {
 
 InflowFeeder::InflowFeeder(const Model& model, const LocalFrame& frame, const std::vector<terrain::Inflow>& inflows) {
     for (const terrain::Inflow& inflow : inflows) {
+        places_.emplace_back(inflow.over_area(), inflow.over_area() ? areas_.size() : sources_.size());
         if (inflow.over_area()) {
             areas_.emplace_back(model, frame, inflow);
             continue;
@@ -30,6 +31,22 @@ std::uint32_t InflowFeeder::remaining() const {
     for (const Source& source : sources_) count += source.total - source.injected;
     for (const AreaSource& area : areas_) count += area.remaining();
     return count;
+}
+
+bool InflowFeeder::awaits(double time) const {
+    return std::any_of(sources_.begin(), sources_.end(),
+                       [&](const Source& source) { return source.gauged && time < source.end(); }) ||
+           std::any_of(areas_.begin(), areas_.end(), [&](const AreaSource& area) { return area.awaits(time); });
+}
+
+void InflowFeeder::set_hydrograph(std::size_t inflow, const std::vector<params::InflowSample>& hydrograph) {
+    const auto [over_area, index] = places_[inflow];
+    if (over_area) return areas_[index].set_hydrograph(hydrograph);
+    Source& source = sources_[index];
+    source.inflow.hydrograph = hydrograph;
+    const auto total = static_cast<std::uint32_t>(std::lround(source.inflow.volume() / source.particle_volume));
+    source.total = std::max(total, source.injected);
+    source.gauged = true;
 }
 
 bool InflowFeeder::due(double time) const {

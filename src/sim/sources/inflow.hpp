@@ -1,7 +1,9 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
+#include <utility>
 #include <vector>
 
 #include "sim/ground.hpp"
@@ -30,6 +32,11 @@ class InflowFeeder {
 
     /// Particles that all inflows together still have to inject.
     [[nodiscard]] std::uint32_t remaining() const;
+    /// Whether a gauge may still bring more at a time, s: an inflow whose hydrograph was replaced has not ended.
+    [[nodiscard]] bool awaits(double time) const;
+    /// Replaces a hydrograph within Simulation::follow_gauge(); `inflow`: its index in the constructor's list. Until
+    /// now both must be the same.
+    void set_hydrograph(std::size_t inflow, const std::vector<params::InflowSample>& hydrograph);
     /// Whether there is work at a time, s: a row is due, or rows are led.
     [[nodiscard]] bool due(double time) const;
     /// Leads the latest rows and injects those due at the state's time, within Simulation::change(). Allocates nothing
@@ -45,6 +52,7 @@ class InflowFeeder {
         terrain::Inflow inflow;
         double spacing = 0, particle_volume = 0;
         std::uint32_t total = 0, injected = 0;
+        bool gauged = false;              ///< its hydrograph is that of a gauge
         std::uint64_t rows = 0;           ///< injected so far
         double last_time = 0;             ///< s, of the last row
         std::array<Row, led_rows> led{};  ///< row k at k % led_rows; empty: none, or no longer led
@@ -63,6 +71,7 @@ class InflowFeeder {
     };
     std::vector<Source> sources_;
     std::vector<AreaSource> areas_;
+    std::vector<std::pair<bool, std::size_t>> places_;  ///< of each inflow: over an area, and its index there
 };
 
 }  // namespace talus::sim

@@ -293,12 +293,45 @@ export interface Done { done: string; created: string | null }
 /** object: id of what the action made. */
 export interface NewScenario { done: string; created: ScenarioName; object: string | null }
 
+/** Values of a trigger's message, by key with its unit. */
+export type TriggerValues = Partial<Record<"volume_m3" | "pore_pressure_ratio" | "discharge_m3ps", number>>;
+/** A run that a trigger started; times of day are UTC. */
+export interface TriggeredRun {
+  scenario: ScenarioName;
+  trigger: string;
+  source: string;
+  received_at: string;
+  reason: string;
+  values: TriggerValues;
+  reading: { discharge_m3ps: number; received_at: string } | null;
+}
+export interface RaisedAlarm {
+  scenario: ScenarioName;
+  alarm: string;
+  sentence: string;
+  message: string;
+  time_s: number;
+  expected_s: number | null;
+  step: number;
+  hash: string;
+  raised_at: string | null;
+  delivery: string;
+}
+export interface Alerts {
+  listening: { http: boolean; mqtt: string | null };
+  triggers: { name: string; limits: TriggerValues }[];
+  runs: TriggeredRun[];
+  alarms: RaisedAlarm[];
+  notes: { at: string; sentence: string }[];
+}
+
 export type ServerMessage =
   | { type: "hello"; protocol: number; you: You; session: Session }
   | ({ type: "state" } & State)
   | ({ type: "setup" } & Setup)
   | { type: "people"; people: Person[]; controller: string | null; request: { id: string; name: string } | null }
   | ({ type: "calibration" } & CalibrationStatus)
+  | ({ type: "alerts" } & Alerts)
   | { type: "scenarios"; scenarios: ScenarioName[] }
   | { type: "ended" }
   | { type: "done"; scenario: ScenarioName; by: string; done: string };

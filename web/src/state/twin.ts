@@ -2,7 +2,7 @@
 import { Api, Refused } from "../protocol/api";
 import { scenarioNames, type Frame, type ScenarioName } from "../protocol/frame";
 import { Live, type Connection } from "../protocol/live";
-import type { Action, CalibrationStatus, Done, Ensemble, Impacts, Person, Place, Point, ProbeSeries, SceneInfo, Series, ServerMessage, Session, Setup, ShownLayer, State, You } from "../protocol/messages";
+import type { Action, Alerts, CalibrationStatus, Done, Ensemble, Impacts, Person, Place, Point, ProbeSeries, SceneInfo, Series, ServerMessage, Session, Setup, ShownLayer, State, You } from "../protocol/messages";
 import { usualMoment, type Moment } from "../scene/natural/sun";
 import type { StartPage } from "../protocol/start";
 import type { Relief } from "../scene/relief";
@@ -11,6 +11,7 @@ import { fields } from "../protocol/schema";
 import type { BarrierSet } from "./barriers";
 import { usualBed, usualZone, type ZoneSet } from "./ground";
 import { usualHydrograph } from "./inflows";
+import { runKey, runKeys } from "./alerts";
 import { stateAt } from "./past";
 
 export interface ScenarioCells {
@@ -80,6 +81,7 @@ export class Twin {
   readonly photo = new Cell(false);
   readonly houseColour = new Cell<HouseColour>("intensity");
   readonly calibration = new Cell<CalibrationStatus | null>(null);
+  readonly alerts = new Cell<Alerts | null>(null);
   readonly tool = new Cell<Tool>({ kind: "none" });
   readonly selection = new Cell<Selection | null>(null);
   /** Thickness, height and other initial values of the next drawn shape. */
@@ -276,6 +278,9 @@ export class Twin {
       case "calibration":
         this.calibration.value = message;
         break;
+      case "alerts":
+        this.hearAlerts(message);
+        break;
       case "scenarios":
         this.setScenarios(message.scenarios);
         this.askForFrames();
@@ -288,6 +293,17 @@ export class Twin {
           (this.scenarios.value.length > 1 ? ` (scenario ${message.scenario})` : ""), "done");
         break;
     }
+  }
+  /** A run that a trigger has just started is shown to everybody, live. */
+  private hearAlerts(alerts: Alerts): void {
+    const known = runKeys(this.alerts.value);
+    const fresh = this.alerts.value === null ? undefined : alerts.runs.filter((run) => !known.includes(runKey(run))).at(-1);
+    this.alerts.value = alerts;
+    if (!fresh) return;
+    if (!this.scenarios.value.includes(fresh.scenario)) this.scenarios.value = [...this.scenarios.value, fresh.scenario].sort();
+    this.replay_s.value = null;
+    this.show([fresh.scenario], fresh.scenario);
+    this.askForFrames();
   }
   /** A scenario that somebody has made is shown beside the first one shown. */
   private setScenarios(scenarios: ScenarioName[]): void {

@@ -1,0 +1,286 @@
+#include "serve/alerts.hpp"
+
+#include <algorithm>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "core/hash.hpp"
+#include "core/try.hpp"
+#include "core/visible_text.hpp"
+
+namespace talus::serve {
+namespace {
+
+using nlohmann::json;
+
+std::string person_of(const std::string& trigger) {
+    return fmt::format("trigger \"{}\"", trigger);
+}
+
+json alarm_json(const twin::RaisedAlarm& alarm) {
+    return {{"alarm", alarm.name},
+            {"sentence", alarm.sentence},
+            {"message", alarm.message},
+            {"time_s", alarm.time},
+            {"expected_s", alarm.expected ? json(*alarm.expected) : json()},
+            {"step", alarm.step},
+            {"hash", to_hex(alarm.hash)}};
+}
+
+}  // namespace
+
+Alerts::Alerts(Session& session, std::shared_ptr<const scene::Scene> scene, AlertSettings settings)
+    : session_(session), scene_(std::move(scene)), settings_(std::move(settings)) {}
+
+Status Alerts::open() {
+    session_.on_alerts([this](int scenario, const RunAlerts& alerts) { follow(scenario, alerts); });
+    if (settings_.mqtt) mqtt_state_ = "connecting";
+    tell();  // the listener's messages come on another thread
+    if (settings_.mqtt) {
+        const auto nobody = [](const Response&) {};
+        MqttLink::Listener listener;
+        listener.message = [this, nobody](const std::string& payload) {
+            session_.post([this, nobody, payload] { take(payload, "MQTT", nobody); });
+        };
+        listener.state = [this](bool connected, const std::string& why) {
+            session_.post([this, connected, why] {
+                const std::string now = connected ? "connected" : "not connected: " + why;
+                if (std::exchange(mqtt_state_, now) == now) return;
+                note(fmt::format("MQTT broker {}: {}", settings_.mqtt->shown(), now));
+            });
+        };
+        TALUS_ASSIGN(link_, MqttLink::open(*settings_.mqtt, std::move(listener)));
+    }
+    sender_ = std::make_unique<AlarmSender>(settings_.sender, link_.get());
+    if (settings_.triggers()) session_.loop().post([](Scenarios& all) { all.reserve_for_triggers(); });
+    return {};
+}
+
+void Alerts::close() {
+    sender_.reset();
+    link_.reset();
+}
+
+/// A bucket of messages that fills again with time.
+bool Alerts::too_many() {
+    const auto now = std::chrono::steady_clock::now();
+    allowance_ =
+        std::min(most_at_once, allowance_ + per_second * std::chrono::duration<double>(now - refilled_).count());
+    refilled_ = now;
+    if (allowance_ < 1) return true;
+    allowance_ -= 1;
+    return false;
+}
+
+void Alerts::refuse(int status, const std::string& sentence, const std::string& source, const Respond& respond) {
+    note(fmt::format("message over {} refused: {}", source, sentence));
+    respond(error_response(status, sentence));
+}
+
+void Alerts::note(const std::string& sentence) {
+    notes_.emplace_back(time_text(std::chrono::system_clock::now()), sentence);
+    if (notes_.size() > most_notes) notes_.pop_front();
+    if (settings_.log) settings_.log(visible(sentence));
+    tell();
+}
+
+void Alerts::tell() {
+    session_.alerts(describe());
+}
+
+void Alerts::take(const std::string& text, const std::string& source, const Respond& respond) {
+    if (!settings_.triggers()) {
+        return respond(error_response(409, "triggers are off; start the server with --trigger-token-file or --mqtt"));
+    }
+    if (too_many()) {  // not noted: notes of a flood would drive out all others
+        return respond(
+            error_response(429, fmt::format("more than {} messages per second; repeat it later", per_second)));
+    }
+    const WallTime now = std::chrono::system_clock::now();
+    auto message = read_trigger_message(text, now);
+    if (!message) return refuse(400, message.error().message, source, respond);
+    const std::vector<params::TriggerSpec>& triggers = scene_->spec.triggers;
+    const auto spec = std::find_if(triggers.begin(), triggers.end(), [&](const params::TriggerSpec& trigger) {
+        return trigger.name == message->trigger;
+    });
+    if (spec == triggers.end()) {
+        return refuse(400, fmt::format("trigger = \"{}\": there is no such trigger", message->trigger), source,
+                      respond);
+    }
+    Job job{std::move(*message), source, time_text(now), spec->start_discharge};
+    const auto answered = [this, source, respond, job](int status, const json& answer) {
+        session_.post([this, source, respond, job, status, answer] {
+            if (status != 200) return refuse(status, answer["error"], source, respond);
+            const json& scenario = answer["scenario"];
+            if (scenario.is_string() && job.message.discharge()) {
+                told_[scenario.get<std::string>().front() - 'A'].reading = {
+                    {"discharge_m3ps", *job.message.discharge()}, {"received_at", job.received_at}};
+            }
+            // Values of a gauge come too often for a list.
+            if (answer["started"] == true) {
+                note(fmt::format("scenario {}: {}", scenario.get<std::string>(), answer["done"].get<std::string>()));
+            } else {
+                tell();
+            }
+            respond(json_response(200, answer));
+        });
+    };
+    session_.loop().post([runs = runs_, job, answered](Scenarios& all) { decide(all, *runs, job, answered); });
+}
+
+void Alerts::decide(Scenarios& all, Runs& runs, const Job& job, const Answered& answered) {
+    Run& run = runs[job.message.trigger];
+    const auto index = all.run_of(job.message.trigger);
+    const auto refused = [&](const std::string& sentence) { answered(409, {{"error", sentence}}); };
+    const auto idle = [&](const std::string& sentence) {
+        answered(200, {{"done", sentence}, {"scenario", nullptr}, {"started", false}});
+    };
+    if (run.starting) return refused(fmt::format("the run of trigger \"{}\" is being prepared", job.message.trigger));
+    if (index) {
+        if (!job.message.is_reading()) {
+            return refused(fmt::format("trigger \"{}\" runs already, as scenario {}; only discharge_m3ps can change it",
+                                       job.message.trigger, Scenarios::name_of(*index)));
+        }
+        if (run.began == WallTime()) return refused("that run was opened from a file; it has no gauge");
+        return feed(all, *index, run, job, answered);
+    }
+    if (const auto discharge = job.message.discharge(); discharge && *discharge >= 0) {
+        if (*discharge <= job.start_discharge) {
+            run.armed = true;
+            return idle(
+                fmt::format("{:.6g} m3/s does not start it; above {:.6g} m3/s does", *discharge, job.start_discharge));
+        }
+        if (!run.armed) {
+            return idle(fmt::format("its last run is over; it starts again after a value of {:.6g} m3/s or less",
+                                    job.start_discharge));
+        }
+    }
+    start(all, run, job, answered);
+}
+
+void Alerts::start(Scenarios& all, Run& run, const Job& job, const Answered& answered) {
+    if (!all.has_place(job.message.trigger)) {
+        return answered(409, {{"error", "every place for a scenario is taken; end one first"}});
+    }
+    json action = {{"action", "trigger"},
+                   {"trigger", job.message.trigger},
+                   {"source", job.source},
+                   {"received_at", job.received_at},
+                   {"values", job.message.values}};
+    if (!job.message.reason.empty()) action["reason"] = job.message.reason;
+    run.starting = true;
+    all.start_by_trigger(action, person_of(job.message.trigger), [&run, job, answered](const Result<Copied>& made) {
+        run.starting = false;
+        if (!made) return answered(400, {{"error", made.error().message}});
+        run.began = job.message.time;
+        run.armed = false;
+        answered(200, {{"done", made->done.sentence}, {"scenario", made->name}, {"started", true}});
+    });
+}
+
+void Alerts::feed(Scenarios& all, int index, const Run& run, const Job& job, const Answered& answered) {
+    const double time = std::chrono::duration<double>(job.message.time - run.began).count();
+    const json action = {{"action", "gauge"},    {"trigger", job.message.trigger},
+                         {"source", job.source}, {"received_at", job.received_at},
+                         {"time_s", time},       {"discharge_m3ps", job.message.values["discharge_m3ps"]}};
+    all.follow_gauge(index, action, person_of(job.message.trigger), [index, answered](const Result<twin::Done>& done) {
+        if (!done) return answered(400, {{"error", done.error().message}});
+        answered(200, {{"done", done->sentence}, {"scenario", Scenarios::name_of(index)}, {"started", false}});
+    });
+}
+
+void Alerts::follow(int scenario, const RunAlerts& alerts) {
+    const auto before = told_.find(scenario);
+    if (alerts.trigger.is_null() && alerts.alarms.empty()) {
+        if (before == told_.end()) return;
+        told_.erase(before);
+        return tell();
+    }
+    Told& told = told_[scenario];
+    const std::size_t first = alerts.alarms.size() - alerts.news;
+    if (first == 0) {
+        json reading = told.alerts.trigger == alerts.trigger ? told.reading : json();
+        told = Told();
+        told.reading = std::move(reading);
+        told.generation = ++generations_;
+    }
+    told.alerts = alerts;
+    for (std::size_t k = first; k < alerts.alarms.size(); ++k) send(scenario, k);
+    tell();
+}
+
+void Alerts::send(int scenario, std::size_t number) {
+    Told& told = told_[scenario];
+    const twin::RaisedAlarm& alarm = told.alerts.alarms[number];
+    const std::string name = Scenarios::name_of(scenario), now = time_text(std::chrono::system_clock::now());
+    told.raised_at[number] = now;
+    if (settings_.log)
+        settings_.log(visible(fmt::format("alarm {} in scenario {}: {}", alarm.name, name, alarm.sentence)));
+    if (!sender_ || !sender_->has_receiver()) return;
+    if (told.alerts.trigger.is_null() && !settings_.all_runs) {
+        told.delivery[number] = "not sent: no trigger started this run";
+        return;
+    }
+    json message = alarm_json(alarm);
+    message["scene"] = scene_->spec.scene.title;
+    message["scenario"] = name;
+    message["trigger"] = told.alerts.trigger.is_null() ? json() : told.alerts.trigger["trigger"];
+    message["raised_at"] = now;
+    told.delivery[number] = "is being sent";
+    sender_->send(message.dump(-1, ' ', false, json::error_handler_t::replace),
+                  [this, scenario, number, generation = told.generation, alarm = alarm.name](
+                      bool reached, const std::string& outcome) {
+                      session_.post([this, scenario, number, generation, alarm, reached, outcome] {
+                          const auto found = told_.find(scenario);
+                          if (found != told_.end() && found->second.generation == generation) {
+                              found->second.delivery[number] = outcome;
+                          }
+                          if (reached) return tell();
+                          note(fmt::format("alarm {}: {}", alarm, outcome));
+                      });
+                  });
+}
+
+json Alerts::describe() const {
+    json triggers = json::array(), runs = json::array(), alarms = json::array(), notes = json::array();
+    for (const params::TriggerSpec& trigger : scene_->spec.triggers) {
+        json takes = json::object();
+        const std::pair<const char*, std::optional<double>> limits[] = {
+            {"volume_m3", trigger.volume_limit},
+            {"pore_pressure_ratio", trigger.pore_pressure_ratio_limit},
+            {"discharge_m3ps", trigger.discharge_limit}};
+        for (const auto& [key, limit] : limits) {
+            if (limit) takes[key] = *limit;
+        }
+        triggers.push_back({{"name", trigger.name}, {"limits", takes}});
+    }
+    for (const auto& [scenario, told] : told_) {
+        const char* name = Scenarios::name_of(scenario);
+        if (!told.alerts.trigger.is_null()) {
+            const json& action = told.alerts.trigger;
+            runs.push_back({{"scenario", name},
+                            {"trigger", action["trigger"]},
+                            {"source", action.value("source", "")},
+                            {"received_at", action.value("received_at", "")},
+                            {"reason", action.value("reason", "")},
+                            {"values", action.value("values", json::object())},
+                            {"reading", told.reading}});
+        }
+        for (std::size_t k = 0; k < told.alerts.alarms.size(); ++k) {
+            json row = alarm_json(told.alerts.alarms[k]);
+            row["scenario"] = name;
+            row["raised_at"] = told.raised_at.contains(k) ? json(told.raised_at.at(k)) : json();
+            row["delivery"] = told.delivery.contains(k) ? told.delivery.at(k) : "";
+            alarms.push_back(std::move(row));
+        }
+    }
+    for (const auto& [time, sentence] : notes_) notes.push_back({{"at", time}, {"sentence", sentence}});
+    return {{"listening", {{"http", settings_.http}, {"mqtt", settings_.mqtt ? json(mqtt_state_) : json()}}},
+            {"triggers", triggers},
+            {"runs", runs},
+            {"alarms", alarms},
+            {"notes", notes}};
+}
+
+}  // namespace talus::serve

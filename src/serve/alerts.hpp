@@ -1,0 +1,103 @@
+#pragma once
+
+#include <chrono>
+#include <cstddef>
+#include <deque>
+#include <functional>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+
+#include <nlohmann/json.hpp>
+
+#include "core/result.hpp"
+#include "params/spec.hpp"
+#include "serve/alarm_sender.hpp"
+#include "serve/mqtt_link.hpp"
+#include "serve/scenarios.hpp"
+#include "serve/session.hpp"
+#include "serve/trigger_message.hpp"
+
+namespace talus::serve {
+
+struct AlertSettings {
+    bool http = false;  ///< there is a token of triggers
+    std::optional<MqttSettings> mqtt;
+    AlarmSender::Settings sender;
+    bool all_runs = false;                             ///< alarms of runs that people started are sent, too
+    std::function<void(const std::string&)> log = {};  ///< from the server's thread
+
+    [[nodiscard]] bool triggers() const { return http || mqtt; }
+};
+
+/// Triggers and alarms of a session (docs/triggers.md): takes messages, starts runs and feeds their gauges, sends
+/// alarms, and tells everybody. For the server's thread.
+class Alerts {
+  public:
+    Alerts(Session& session, std::shared_ptr<const scene::Scene> scene, AlertSettings settings);
+    Alerts(const Alerts&) = delete;
+    Alerts& operator=(const Alerts&) = delete;
+
+    /// Once the session is open. Errors: as MqttLink::open.
+    [[nodiscard]] Status open();
+    /// Ends the threads.
+    void close();
+
+    /// A message that came over `source`, "HTTP" or "MQTT". The answer is `{"done", "scenario", "started"}`; errors:
+    /// 400 for the message, 409 for what is not possible now, 429 for too many.
+    void take(const std::string& text, const std::string& source, const Respond& respond);
+    /// As `GET /api/alerts`.
+    [[nodiscard]] nlohmann::json describe() const;
+
+  private:
+    /// The run of a trigger, for the loop's thread.
+    struct Run {
+        bool starting = false;
+        bool armed = true;  ///< a gauge may start it: it has been low since the last run
+        WallTime began{};   ///< time 0
+    };
+    using Runs = std::map<std::string, Run>;
+    struct Job {
+        TriggerMessage message;
+        std::string source, received_at;
+        double start_discharge = 0;
+    };
+    using Answered = std::function<void(int status, const nlohmann::json& answer)>;
+
+    static void decide(Scenarios& all, Runs& runs, const Job& job, const Answered& answered);
+    static void start(Scenarios& all, Run& run, const Job& job, const Answered& answered);
+    static void feed(Scenarios& all, int index, const Run& run, const Job& job, const Answered& answered);
+    [[nodiscard]] bool too_many();
+    void refuse(int status, const std::string& sentence, const std::string& source, const Respond& respond);
+    void note(const std::string& sentence);
+    void follow(int scenario, const RunAlerts& alerts);
+    void send(int scenario, std::size_t number);
+    void tell();
+
+    Session& session_;
+    std::shared_ptr<const scene::Scene> scene_;
+    AlertSettings settings_;
+    std::shared_ptr<Runs> runs_ = std::make_shared<Runs>();  // for the loop's thread alone
+
+    struct Told {
+        RunAlerts alerts;
+        nlohmann::json reading;                                  // the last one; null: none
+        std::map<std::size_t, std::string> raised_at, delivery;  // by alarm
+        std::uint64_t generation = 0;                            // of the run: what is delivered later belongs to it
+    };
+    std::map<int, Told> told_;  // by scenario
+    std::uint64_t generations_ = 0;
+    std::deque<std::pair<std::string, std::string>> notes_;  // time and sentence, the newest last
+    std::string mqtt_state_;
+    double allowance_ = most_at_once;
+    std::chrono::steady_clock::time_point refilled_ = std::chrono::steady_clock::now();
+    static constexpr double most_at_once = 20, per_second = 5;
+    static constexpr std::size_t most_notes = 20;
+
+    std::unique_ptr<MqttLink> link_;
+    std::unique_ptr<AlarmSender> sender_;  // ends first
+};
+
+}  // namespace talus::serve
