@@ -172,11 +172,7 @@ Result<Scene> assemble_scene(const ParsedScene& parsed) {
     TALUS_TRY(load_observations(parsed, scene));
     TALUS_TRY(load_gauges(parsed, scene));
     TALUS_TRY(load_zoom(parsed, scene));
-<<<<<<< ours
     TALUS_TRY(check_alerts(parsed, scene));
-    const bool particles = scene.spec.solver.model == params::ModelChoice::particles;
-=======
->>>>>>> theirs
     TALUS_TRY(particles ? check_limits(parsed, scene) : check_depth_averaged(parsed, scene));
     note_implausible_terrain(scene);
     if (particles) note_coarse_particles(scene);
