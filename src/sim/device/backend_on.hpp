@@ -20,7 +20,7 @@
 namespace talus::sim::device {
 
 struct CompressionOf {
-    const float *compression, *before;
+    const float *compression{}, *before{};
 
     TALUS_DEVICE CompressionSum operator()(std::uint32_t i) const {
         CompressionSum own;
@@ -199,7 +199,7 @@ class BackendOn final : public Backend {
         if (count == 0) return;
         impacts_.reserve(count);
         executor_.for_each(state.awake, WriteImpacts{data_, state.time_step, impacts_.data()});
-        state.building_contacts.resize(count);
+        state.building_contacts.assign(count, BuildingContact{0, -1, 0});
         impacts_.download(state.building_contacts);
     }
 

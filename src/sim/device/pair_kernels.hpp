@@ -18,7 +18,7 @@ template <class Smoothing>
 struct FindTolerated {
     Data d;
     PairKernel<Smoothing> pair;
-    float undone;
+    float undone{};
 
     TALUS_DEVICE void operator()(std::uint32_t i) const {
         const Vec3<float> p = d.state.position[i];
@@ -37,7 +37,7 @@ template <class Smoothing>
 struct UpdateMultipliers {
     Data d;
     PairKernel<Smoothing> pair;
-    float softness, factor;
+    float softness{}, factor{};
 
     TALUS_DEVICE void operator()(std::uint32_t i) const {
         if (!d.state.moves(i)) {
@@ -72,7 +72,7 @@ template <class Smoothing>
 struct ApplyPairs {
     Data d;
     PairKernel<Smoothing> pair;
-    float cap;
+    float cap{};
 
     TALUS_DEVICE void operator()(std::uint32_t i) const {
         const Row own = d.work.moved[i];

@@ -20,7 +20,7 @@ namespace talus::sim::device {
 /// Starts the releases whose time has come.
 struct ReleaseHeld {
     Data d;
-    double time;
+    double time{};
 
     TALUS_DEVICE void operator()(std::uint32_t i) const {
         if (d.state.held[i] != 0 && time >= start_time_of(d.model, d.state.id[i])) d.state.held[i] = 0;
@@ -48,7 +48,7 @@ struct ClearColumns {
 
 struct CountColumns {
     Data d;
-    ColumnBox box;
+    ColumnBox box{};
 
     TALUS_DEVICE void operator()(std::uint32_t i) const {
         const LocalPoint p = d.state.position[i];
@@ -62,8 +62,8 @@ struct CountColumns {
 /// Drag by speed, with the thickness of the flow before the step.
 struct Drag {
     Data d;
-    ColumnBox box;
-    float time_step;
+    ColumnBox box{};
+    float time_step{};
 
     TALUS_DEVICE void operator()(std::uint32_t i) const {
         if (!d.state.moves(i)) return;
@@ -84,7 +84,7 @@ struct Drag {
 
 struct ApplyGravity {
     Data d;
-    float fall;  ///< m/s
+    float fall{};  ///< m/s
 
     TALUS_DEVICE void operator()(std::uint32_t i) const {
         if (d.state.moves(i)) d.state.velocity[i].z -= fall;
@@ -94,8 +94,8 @@ struct ApplyGravity {
 /// Initialises what the step knows of all particles in their new order, sleeping ones included.
 struct Begin {
     Data d;
-    float time_step;
-    bool walls;
+    float time_step{};
+    bool walls{};
 
     TALUS_DEVICE void operator()(std::uint32_t i) const {
         const LocalPoint p = d.state.position[i];
@@ -112,8 +112,8 @@ struct Begin {
 /// Resistance of every particle, where it varies between them.
 struct Resist {
     Data d;
-    float strength, pressure_scale;
-    double time;
+    float strength{}, pressure_scale{};
+    double time{};
 
     TALUS_DEVICE void operator()(std::uint32_t i) const {
         const auto share = static_cast<float>(effective_share(d.model, d.state.id[i], time));
@@ -138,7 +138,7 @@ struct Resist {
 
 /// The share of ground and walls in a particle's density.
 struct BoundaryShare {
-    float density;
+    float density{};
     Vec3<float> gradient;
 };
 
@@ -172,7 +172,7 @@ TALUS_DEVICE inline BoundaryShare sample_boundary_of(const Data& d, std::uint32_
 /// Contact with ground and buildings, and the basal part of eq. (4).
 struct Contacts {
     Data d;
-    bool by_particle, place_follows;
+    bool by_particle{}, place_follows{};
 
     TALUS_DEVICE void operator()(std::uint32_t i) const {
         if (!d.state.moves(i)) return;
@@ -212,7 +212,7 @@ struct Contacts {
 /// dense is already computed.
 struct UndoOverlaps {
     Data d;
-    bool spread;
+    bool spread{};
 
     TALUS_DEVICE void operator()(std::uint32_t i) const {
         if (!d.state.moves(i)) {
@@ -231,7 +231,7 @@ struct UndoOverlaps {
 /// The end of the step, which is above ground and outside of buildings, and the velocity.
 struct Finish {
     Data d;
-    float inverse_time_step;
+    float inverse_time_step{};
 
     TALUS_DEVICE void operator()(std::uint32_t i) const {
         if (d.state.moves(i)) {
@@ -280,8 +280,8 @@ struct CountImpacts {
 /// Writes them, each at its place in the order of the particles.
 struct WriteImpacts {
     Data d;
-    double time_step;
-    BuildingContact* to;
+    double time_step{};
+    BuildingContact* to{};
 
     TALUS_DEVICE void operator()(std::uint32_t i) const {
         std::uint32_t at = d.work.index[i];
@@ -304,7 +304,7 @@ template <class Smoothing>
 struct ApplyViscosity {
     Data d;
     PairKernel<Smoothing> pair;
-    float smoothing;
+    float smoothing{};
 
     TALUS_DEVICE void operator()(std::uint32_t i) const {
         if (!d.state.moves(i)) return;
@@ -326,9 +326,9 @@ struct ApplyViscosity {
 /// Puts debris to sleep that has hardly moved, wakes debris beside moving debris; see cpu/particle_stages.cpp.
 struct UpdateSleep {
     Data d;
-    float time_step, rest_duration, sleep_square, wake_square;
-    std::uint32_t awake;
-    bool any_asleep;
+    float time_step{}, rest_duration{}, sleep_square{}, wake_square{};
+    std::uint32_t awake{};
+    bool any_asleep{};
 
     TALUS_DEVICE void operator()(std::uint32_t i) const {
         const bool moves = d.state.moves(i);
@@ -351,7 +351,7 @@ struct UpdateSleep {
 /// Notes in `index` which particles stay on the terrain.
 struct MarkInside {
     Data d;
-    std::uint32_t awake;
+    std::uint32_t awake{};
 
     TALUS_DEVICE void operator()(std::uint32_t i) const {
         const LocalPoint p = d.state.position[i];
@@ -362,7 +362,7 @@ struct MarkInside {
 /// Lists the marked ones in their order.
 struct ListMarked {
     Data d;
-    std::uint32_t count;
+    std::uint32_t count{};
 
     TALUS_DEVICE void operator()(std::uint32_t i) const {
         const std::uint32_t at = d.work.index[i];

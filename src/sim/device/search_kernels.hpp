@@ -16,7 +16,7 @@ struct Bounds {
 
 struct BoundsOf {
     Data d;
-    float time_step;  ///< 0: where they are
+    float time_step{};  ///< 0: where they are
 
     TALUS_DEVICE Bounds operator()(std::uint32_t i) const {
         const Vec3<float> p =
@@ -64,7 +64,7 @@ struct CellBox {
 struct CellKeys {
     Data d;
     CellBox box;
-    float time_step;
+    float time_step{};
 
     TALUS_DEVICE void operator()(std::uint32_t i) const {
         const Bounds at = BoundsOf{d, time_step}(i);
@@ -115,8 +115,8 @@ struct Cells {
 /// Lists the cells.
 struct ListCells {
     Data d;
-    Cells cells;
-    std::uint32_t particles;
+    Cells cells{};
+    std::uint32_t particles{};
 
     TALUS_DEVICE void operator()(std::uint32_t i) const {
         const std::uint32_t cell = d.work.index[i];
@@ -130,9 +130,9 @@ struct ListCells {
 
 /// The particles in the rows around a cell.
 struct FindRows {
-    Cells cells;
+    Cells cells{};
     CellBox box;
-    bool any_asleep;
+    bool any_asleep{};
 
     TALUS_DEVICE void operator()(std::uint32_t cell) const {
         const std::uint64_t key = cells.key[cell], sleeps = std::uint64_t{1} << box.key_bits;
@@ -181,8 +181,8 @@ TALUS_DEVICE void search(const Data& d, const Cells& cells, float square_radius,
 
 struct CountNeighbours {
     Data d;
-    Cells cells;
-    float square_radius;
+    Cells cells{};
+    float square_radius{};
 
     TALUS_DEVICE void operator()(std::uint32_t i) const {
         std::uint32_t count = 0;
@@ -194,8 +194,8 @@ struct CountNeighbours {
 /// Room for the lists of the particles that are worked on together.
 struct MeasureLists {
     Data d;
-    std::uint32_t* size;
-    std::uint32_t awake;
+    std::uint32_t* size{};
+    std::uint32_t awake{};
 
     TALUS_DEVICE void operator()(std::uint32_t group) const {
         std::uint32_t longest = 0;
@@ -208,9 +208,9 @@ struct MeasureLists {
 
 struct WriteLists {
     Data d;
-    Cells cells;
-    float square_radius;
-    std::uint32_t* neighbour;
+    Cells cells{};
+    float square_radius{};
+    std::uint32_t* neighbour{};
 
     TALUS_DEVICE void operator()(std::uint32_t i) const {
         std::uint32_t* to = neighbour + d.neighbours.start[i / list_width] + i % list_width;

@@ -39,7 +39,7 @@ struct ChosenSmoothing {
 
 /// The kernel of a pair, with its constants.
 template <class Smoothing>
-struct PairKernel {
+struct PairKernel {  // NOLINT(cppcoreguidelines-pro-type-member-init): the scale has a constructor
     Smoothing kernel;
     PairScale scale;
 

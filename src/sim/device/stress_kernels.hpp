@@ -32,7 +32,7 @@ template <class Smoothing>
 struct Linearise {
     Data d;
     PairKernel<Smoothing> pair;
-    float softness, warm_scale;
+    float softness{}, warm_scale{};
 
     TALUS_DEVICE void operator()(std::uint32_t i) const {
         const Vec3<float> p = d.work.place[i].vector(), moved = d.work.moved[i].vector();
@@ -59,8 +59,8 @@ struct Linearise {
 /// Sleeping debris only presses on its neighbours.
 struct PressAsleep {
     Data d;
-    float warm_scale;
-    std::uint32_t awake;
+    float warm_scale{};
+    std::uint32_t awake{};
 
     TALUS_DEVICE void operator()(std::uint32_t k) const { start_warm(d, awake + k, warm_scale); }
 };
@@ -68,7 +68,7 @@ struct PressAsleep {
 /// It contributes no further changes in this step.
 struct ClearAsleep {
     Data d;
-    std::uint32_t awake;
+    std::uint32_t awake{};
 
     TALUS_DEVICE void operator()(std::uint32_t k) const { d.work.change[awake + k] = {}; }
 };
@@ -78,8 +78,8 @@ template <class Smoothing>
 struct SolveStress {
     Data d;
     PairKernel<Smoothing> pair;
-    float factor, cohesion, grain_size;
-    bool by_particle;
+    float factor{}, cohesion{}, grain_size{};
+    bool by_particle{};
 
     TALUS_DEVICE void operator()(std::uint32_t i) const {
         if (!d.state.moves(i)) {
@@ -152,7 +152,7 @@ struct ApplyStress {
 /// Density above that at rest, as a multiplier.
 struct FindSpread {
     Data d;
-    float factor, share;
+    float factor{}, share{};
 
     TALUS_DEVICE void operator()(std::uint32_t i) const {
         const float excess = spread_in_step(d.work.compression[i], share);
