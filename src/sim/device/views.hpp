@@ -101,7 +101,7 @@ struct Walls {
     X(LocalPoint, boundary_gradient, true)                                                                             \
     X(DensityConstraint<float>, constraint, true)                                                                      \
     X(float, compression, true)             /* max(0, G) */                                                            \
-    X(float, tolerated_compression, true) /* of what the step started with */                                          \
+    X(float, tolerated_compression, true)   /* of what the step started with */                                        \
     X(Resistance, resistance, needs.resistance)                                                                        \
     X(ContactMemory<float>, contact, true)  /* with the ground */                                                      \
     X(Walls, walls, needs.walls)                                                                                       \
