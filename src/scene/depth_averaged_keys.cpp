@@ -118,6 +118,7 @@ constexpr std::array keys = {
     DepthAveragedKey{"solver.rest_duration_s", noted, ""},
     DepthAveragedKey{"solver.compression_limit", noted, ""},
     DepthAveragedKey{"solver.thread_count", used, ""},
+    DepthAveragedKey{"solver.backend", noted, ""},
     DepthAveragedKey{"solver.model", used, ""},
     DepthAveragedKey{"solver.grid_cell_m", used, ""},
     DepthAveragedKey{"outputs.map_cell_m", noted, ""},
@@ -154,6 +155,9 @@ constexpr std::array keys = {
     DepthAveragedKey{"affected_area.*", used, ""},
     DepthAveragedKey{"elevation_change.*", used, ""},
     DepthAveragedKey{"variant.*", used, ""},
+    // Of the live twin, whose runs are of particles; a run takes no notice of them, whatever its model.
+    DepthAveragedKey{"trigger.*", used, ""},
+    DepthAveragedKey{"alarm.*", used, ""},
 };
 
 }  // namespace
