@@ -34,13 +34,16 @@ try {
   }));
   const { profile } = await inspector.send("HeapProfiler.stopSampling");
   const places = new Map();
-  const walk = (node) => {
+  let drawing = 0;
+  const walk = (node, drawn) => {
+    const within = drawn || (node.callFrame.functionName === "tick" && /page-/.test(node.callFrame.url));  // of the stage: all of a picture
+    if (within) drawing += node.selfSize;
     const { functionName, url, lineNumber, columnNumber } = node.callFrame;
     const place = `${functionName || "(no name)"} ${url.split("/").at(-1)}:${lineNumber}:${columnNumber}`;
     places.set(place, (places.get(place) ?? 0) + node.selfSize);
-    node.children.forEach(walk);
+    for (const child of node.children) walk(child, within);
   };
-  walk(profile.head);
+  walk(profile.head, false);
   const of = (key) => seen.map((p) => p[key]).sort((a, b) => a - b);
   const told = (key, what) => {
     const sorted = of(key);
@@ -50,7 +53,7 @@ try {
   console.log(`particles        ${seen.at(-1).particles}`);
   console.log(`draw calls       ${Math.max(...of("drawCalls"))} at most`);
   const most = [...places].sort((a, b) => b[1] - a[1]);
-  console.log(`allocated        ${(most.reduce((sum, [, bytes]) => sum + bytes, 0) / seen.length / 1e3).toFixed(1)} kB a picture, most of it in`);
+  console.log(`allocated        ${(most.reduce((sum, [, bytes]) => sum + bytes, 0) / seen.length / 1e3).toFixed(1)} kB a picture, ${(drawing / seen.length / 1e3).toFixed(1)} kB of it while drawing it; most of all in`);
   for (const [place, bytes] of most.slice(0, 6)) console.log(`  ${(bytes / seen.length / 1e3).toFixed(1)} kB  ${place}`);
   told("script_ms", "a picture:     ");
   told("draw_ms", "  of it WebGL: ");

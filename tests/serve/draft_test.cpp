@@ -1,5 +1,7 @@
 #include "serve/draft.hpp"
 
+#include <cstdint>
+#include <cstring>
 #include <fstream>
 
 #include <fmt/format.h>
@@ -305,6 +307,96 @@ TEST(Draft, names_of_uploads_are_plain) {
     EXPECT_EQ(serve::upload_name_of("..."), "file");
     EXPECT_EQ(serve::upload_name_of("a.b/c.tif\n"), "c.tif");
     EXPECT_EQ(serve::upload_name_of(""), "file");
+}
+
+/// What becomes of a file on its way from somebody who means harm: bytes replaced, cut off, repeated, or set to the
+/// numbers at which sizes and offsets overflow. The same for the same seed.
+std::string damaged(std::string bytes, std::uint64_t seed) {
+    std::uint64_t state = seed * 0x9E3779B97F4A7C15U + 1;
+    const auto below = [&](std::size_t most) {
+        state ^= state << 13;
+        state ^= state >> 7;
+        state ^= state << 17;
+        return static_cast<std::size_t>(state % std::max<std::size_t>(1, most));
+    };
+    constexpr std::uint32_t edges[] = {0, 1, 0x7FFFFFFF, 0x80000000, 0xFFFFFFFF, 0x7FFF, 0xFFFF, 0x40000000};
+    for (std::size_t k = 0, count = 1 + below(8); k < count && bytes.size() > 8; ++k) {
+        // Headers are where harm is done: every second change is among the first bytes.
+        const std::size_t at = below(k % 2 == 0 ? std::min<std::size_t>(bytes.size(), 400) : bytes.size());
+        switch (below(5)) {
+            case 0:
+                bytes[at] = static_cast<char>(below(256));
+                break;
+            case 1:
+                std::memcpy(bytes.data() + std::min(at, bytes.size() - 4), &edges[below(std::size(edges))], 4);
+                break;
+            case 2:
+                bytes.resize(std::max<std::size_t>(8, at));
+                break;
+            case 3:
+                bytes.insert(at, bytes.substr(below(bytes.size()), below(64)));
+                break;
+            default:
+                bytes.erase(at, below(32));
+        }
+    }
+    return bytes;
+}
+
+TEST_F(NewScenePage, damaged_files_are_refused_in_a_sentence_or_taken_and_harm_nothing) {
+    limits_ = {2'000'000, 20, 100'000};
+    start();
+    SetUp();
+    RasterOptions packed = SmallScene::terrain();
+    packed.creation_options = {"COMPRESS=DEFLATE", "TILED=YES"};
+    write_plane(scene_.input("tiled.tif"), packed);
+    const std::string raster = read_text(scene_.input("terrain.tif")), tiled = read_text(scene_.input("tiled.tif"));
+    const std::string layer = read_text(scene_.input("release.geojson"));
+    std::vector<geo::ZipEntry> parts;
+    VectorOptions shape;
+    shape.driver = "ESRI Shapefile";
+    shape.layer = "scar";
+    write_vector(scene_.input("scar.shp"), shape, {{rectangle_wkt(824200, 825090, 824220, 825110), {}}});
+    for (const char* ending : {".shp", ".shx", ".dbf", ".prj"}) {
+        parts.push_back({std::string("scar") + ending, scene_.input(std::string("scar") + ending)});
+    }
+    const std::string shapes = zip(parts);
+    struct Kind {
+        const char *role, *name;
+        const std::string* content;
+    };
+    const Kind kinds[] = {{"terrain", "dem.tif", &raster},         {"terrain", "dem.tif", &tiled},
+                          {"release", "scar.geojson", &layer},     {"release", "scar.zip", &shapes},
+                          {"buildings", "houses.geojson", &layer}, {"orthophoto", "photo.tif", &tiled}};
+    int taken = 0, refused = 0;
+    for (std::uint64_t seed = 0; seed < 40; ++seed) {
+        for (const Kind& kind : kinds) {
+            SCOPED_TRACE(fmt::format("{} {} seed {}", kind.role, kind.name, seed));
+            const Answer answer = put(kind.role, kind.name, damaged(*kind.content, seed));
+            ASSERT_TRUE(answer.status == 200 || answer.status == 400) << answer.status << " " << answer.body;
+            (answer.status == 200 ? taken : refused) += 1;
+            if (answer.status != 200) {
+                const std::string sentence = answer.json()["error"];
+                EXPECT_FALSE(sentence.empty());
+                EXPECT_THAT(sentence, Not(HasSubstr("\n")));
+                EXPECT_THAT(sentence, Not(HasSubstr(folder().string())));
+            }
+        }
+        const Answer checked = check({{"scar", scar()}, {"thickness_m", 1}});
+        ASSERT_TRUE(checked.status == 200 || checked.status == 400) << checked.status << " " << checked.body;
+    }
+    EXPECT_GT(taken, 5) << "some of the damage is where nobody looks";
+    EXPECT_GT(refused, 100);
+    std::uintmax_t bytes = 0;
+    for (const auto& entry : fs::recursive_directory_iterator(folder() / "drafts")) {
+        if (entry.is_regular_file()) bytes += entry.file_size();
+    }
+    EXPECT_LE(bytes, limits_.bytes);
+    // The server has come through it: a good scene can still be made.
+    EXPECT_EQ(client_->ask("DELETE", draft_).status, 200);
+    draft_ = "/api/draft/" + begin();
+    ASSERT_EQ(put_file("terrain", scene_.input("terrain.tif")).status, 200);
+    EXPECT_EQ(check({{"scar", scar()}}).status, 200);
 }
 
 }  // namespace

@@ -278,6 +278,21 @@ export async function testReadings(run) {
     await run.shot(page, "13-compare");
     await page.click("button[data-scenario=A]");
     assert.equal(await friction.inputValue(), String(a));
+
+    // On a screen that is higher than wide, one is above the other, and a click finds the view that it is in.
+    const before = page.viewportSize();
+    await page.setViewportSize({ width: 390, height: 844 });
+    const box = (name) => page.locator(`.pane[data-scenario=${name}]`).boundingBox();
+    const lower = await until(() => box("B"), ({ x, width }) => x === 0 && width === 390, "the whole width");
+    const upper = await box("A");
+    assert.ok(upper.width === 390 && lower.y >= upper.y + upper.height - 1, JSON.stringify([upper, lower]));
+    const [above, below] = [await run.still(page, await viewClip(page, "A")), await run.still(page, await viewClip(page, "B"))];
+    assert.ok(above.different > 800 && below.different > 800, `${above.different} and ${below.different} colours`);
+    assert.notEqual(above.hash, below.hash, "both views are alike");
+    await run.shot(page, "13-compare-phone");
+    const seen = await page.locator(".pane[data-scenario=B] .label.release:not(.off)").first().boundingBox();
+    assert.ok(seen.y > lower.y && seen.y < lower.y + lower.height, "names are in their view");
+    await page.setViewportSize(before);
     await page.click("[aria-label='End scenario B']");
     await page.click("dialog[open] button:has-text('End it')");
     await until(() => page.locator(".pane").count(), (n) => n === 1, "one view");

@@ -57,7 +57,8 @@ export class Picture {
     c.fillText(title, 20, 25);
     c.font = `12px ${font}`;
     changed.forEach((line, i) => c.fillText(line, 20, 58 + 15 * i, width - 60));
-    c.fillText(time + (stage.views.size > 1 ? `   ${twin.shown.value[0]} left, ${twin.shown.value[1]} right` : ""), 20, 43);
+    const [first, second] = stage.stacked ? ["above", "below"] : ["left", "right"];
+    c.fillText(time + (stage.views.size > 1 ? `   ${twin.shown.value[0]} ${first}, ${twin.shown.value[1]} ${second}` : ""), 20, 43);
     strip.draw(c, height);
     const perPixel = stage.metresPerPixel;
     const length = roundStep(perPixel * 60);

@@ -137,11 +137,9 @@ export class Drawing {
       if (this.twin.tool.value.kind === "none") return;
       if (event.key === " ") {
         // Without a pointer, a point is placed in the middle of the view.
-        const box = canvas.getBoundingClientRect();
-        const wide = box.width / Math.max(1, this.stage.views.size);
-        const column = [...this.stage.views.keys()].indexOf(this.twin.edited.value);
+        const middle = this.stage.pixelOf(this.twin.edited.value, 0, 0);
         this.crosshair.hidden = false;
-        this.put(this.stage.hit(box.left + (column + 0.5) * wide, box.top + box.height / 2));
+        if (middle) this.put(this.stage.hit(middle.x, middle.y));
       } else if (event.key === "x" && !event.ctrlKey && !event.metaKey) this.snap();
       else if (event.key === "Enter") this.finish();
       else if (event.key === "Backspace") this.removeLast();
@@ -166,15 +164,12 @@ export class Drawing {
   }
   /** A click without a tool selects the house, barrier or release under it, else the inflow, bed or zone. */
   private select(event: PointerEvent, hit: Hit | null): void {
-    const box = this.stage.canvas.getBoundingClientRect();
-    const { views, rig } = this.stage;
-    const wide = box.width / Math.max(1, views.size);
-    const column = Math.floor((event.clientX - box.left) / wide);
-    const name = [...views.keys()][column];
-    const view = name && views.get(name);
-    if (!name || !view) return;
+    const at = this.stage.viewAt(event.clientX, event.clientY);
+    const view = at && this.stage.views.get(at.name);
+    if (!at || !view) return;
+    const { name } = at;
     const ray = new Raycaster();
-    ray.setFromCamera(new Vector2(((event.clientX - box.left - column * wide) / wide) * 2 - 1, 1 - ((event.clientY - box.top) / box.height) * 2), rig.camera);
+    ray.setFromCamera(new Vector2(at.x, at.y), this.stage.rig.camera);
     const id = view.solidUnder(ray);
     const setup = this.twin.cells[name].setup.value;
     let selection: Selection | null = null;

@@ -174,7 +174,7 @@ export class Stage {
       this.panes.set(name, pane);
       this.element.append(pane);
     }
-    // From left to right in the order of the names.
+    // From left to right, or from top to bottom, in the order of the names.
     for (const name of names) {
       const view = this.views.get(name);
       this.views.delete(name);
@@ -198,7 +198,9 @@ export class Stage {
     this.height = Math.max(1, this.element.clientHeight);
     this.setSharpness(1);
     this.renderer.setSize(this.width, this.height, false);
-    this.rig.aspect = this.width / Math.max(1, this.views.size) / this.height;
+    const part = this.part(0);
+    this.element.classList.toggle("stacked", this.stacked);
+    this.rig.aspect = part.wide / part.high;
     // A view that is higher than wide, as on a phone, would cut off the sides.
     if (!this.fitted && this.element.clientWidth > 0) {
       this.fitted = true;
@@ -208,6 +210,16 @@ export class Stage {
     this.invalidate();
   }
 
+  /** Whether views stand above one another: where the stage is higher than wide, as on a phone. */
+  get stacked(): boolean {
+    return this.views.size > 1 && this.width < this.height;
+  }
+  /** Place of the k-th view in pixels of the stage, from its top left. */
+  private part(k: number): { left: number; top: number; wide: number; high: number } {
+    const count = Math.max(1, this.views.size);
+    return this.stacked ? { left: 0, top: (k * this.height) / count, wide: this.width, high: this.height / count }
+      : { left: (k * this.width) / count, top: 0, wide: this.width / count, high: this.height };
+  }
   /** `share` of the screen's pixels; a change clears the canvas. */
   private setSharpness(share: number): void {
     const ratio = share * Math.min(2, devicePixelRatio);
@@ -238,22 +250,23 @@ export class Stage {
     const begun = performance.now();
     const camera = this.rig.camera;
     camera.updateMatrixWorld();
-    const wide = this.width / Math.max(1, this.views.size);
-    const pixels = this.height * this.renderer.getPixelRatio() * this.rig.magnification;
+    const pixels = this.part(0).high * this.renderer.getPixelRatio() * this.rig.magnification;
     this.renderer.setScissorTest(true);
     this.stats.detail = this.renderer.getPixelRatio() >= Math.min(2, devicePixelRatio) ? 2 : this.resolution.detail;
     this.daylight.prepare(this.twin.natural, this.rig.mode === "plan", this.stats.detail);
     this.stats.drawCalls = 0;
-    let column = 0;
+    let k = 0;
     let more = false;
     for (const view of this.views.values()) {
+      const { left, top, wide, high } = this.part(k);
+      const bottom = this.height - top - high;
       if (view.update(now, camera, pixels, this.fastest_mps.value)) more = true;
       if (this.cameraMoved || view.labels.layer.dataset["stale"] !== "no") {
-        view.labels.place(this.rig, wide, this.height, this.covered(column * wide));
+        view.labels.place(this.rig, wide, high, this.covered(left, top));
         view.labels.layer.dataset["stale"] = "no";
       }
-      this.renderer.setViewport(column * wide, 0, wide, this.height);
-      this.renderer.setScissor(column * wide, 0, wide, this.height);
+      this.renderer.setViewport(left, bottom, wide, high);
+      this.renderer.setScissor(left, bottom, wide, high);
       if (view.shadowsDue) {
         this.renderer.shadowMap.needsUpdate = true;
         view.shadowsDue = false;
@@ -263,7 +276,7 @@ export class Stage {
       this.renderer.render(view.three, camera);
       this.stats.draw_ms = performance.now() - drawn;
       this.stats.drawCalls += this.renderer.info.render.calls;
-      ++column;
+      ++k;
       if (view.name === this.twin.edited.value) this.stats.shownTime_s = view.clock.time_s(now) ?? 0;
     }
     if (this.cameraMoved) {
@@ -275,13 +288,13 @@ export class Stage {
     ++this.stats.frames;
     this.stats.script_ms = performance.now() - begun;
   }
-  /** Elements that cover a view whose left edge is at `left`, as boxes in that view. */
-  private covered(left: number): Box[] {
+  /** Elements that cover a view whose top left corner is there, as boxes in that view. */
+  private covered(left: number, top: number): Box[] {
     if (!this.element.isConnected) return [];
     const own = this.canvas.getBoundingClientRect();
     return this.covers.filter((e) => !e.hidden).flatMap((element) => [...(element.classList.contains("bar") ? [element] : element.children)]).map((element) => {
       const box = element.getBoundingClientRect();
-      return [box.left - own.left - left, box.top - own.top, box.right - own.left - left, box.bottom - own.top];
+      return [box.left - own.left - left, box.top - own.top - top, box.right - own.left - left, box.bottom - own.top - top];
     });
   }
   relabel(view: ScenarioView): void {
@@ -290,31 +303,40 @@ export class Stage {
     this.invalidate();
   }
 
+  /** The view at a point of the page, and the point in it from -1 to 1, to the right and up. */
+  viewAt(clientX: number, clientY: number): { name: ScenarioName; x: number; y: number } | null {
+    const box = this.canvas.getBoundingClientRect();
+    for (const [k, name] of [...this.views.keys()].entries()) {
+      const { left, top, wide, high } = this.part(k);
+      const [x, y] = [(clientX - box.left - left) / wide, (clientY - box.top - top) / high];
+      if (x >= 0 && x < 1 && y >= 0 && y <= 1) return { name, x: 2 * x - 1, y: 1 - 2 * y };
+    }
+    return null;
+  }
   /** The object under a point of the page. */
   hit(clientX: number, clientY: number): Hit | null {
+    const at = this.viewAt(clientX, clientY);
+    if (at === null) return null;
+    const { from, direction } = this.rig.sight(at.x, at.y);
+    const world = this.reliefOf(at.name).meet(from, direction);
+    return world ? { scenario: at.name, world, x: clientX, y: clientY } : null;
+  }
+  /** A point of a view, from -1 to 1, in pixels of the page. */
+  pixelOf(scenario: ScenarioName, x: number, y: number): { x: number; y: number } | null {
+    const k = [...this.views.keys()].indexOf(scenario);
+    if (k < 0) return null;
     const box = this.canvas.getBoundingClientRect();
-    const wide = box.width / Math.max(1, this.views.size);
-    const column = Math.floor((clientX - box.left) / wide);
-    const name = [...this.views.keys()][column];
-    if (name === undefined || clientY < box.top || clientY > box.bottom) return null;
-    const x = ((clientX - box.left - column * wide) / wide) * 2 - 1;
-    const y = 1 - ((clientY - box.top) / box.height) * 2;
-    const { from, direction } = this.rig.sight(x, y);
-    const world = this.reliefOf(name).meet(from, direction);
-    return world ? { scenario: name, world, x: clientX, y: clientY } : null;
+    const { left, top, wide, high } = this.part(k);
+    return { x: box.left + left + ((x + 1) / 2) * wide, y: box.top + top + ((1 - y) / 2) * high };
   }
   /** Position of a local place in pixels of the page; null behind the camera. */
   seenAt(local: Place, scenario: ScenarioName): { x: number; y: number } | null {
-    const box = this.canvas.getBoundingClientRect();
-    const wide = box.width / Math.max(1, this.views.size);
-    const column = [...this.views.keys()].indexOf(scenario);
     const seen = new Vector3(...local).project(this.rig.camera);
-    if (seen.z > 1 || column < 0) return null;
-    return { x: box.left + column * wide + ((seen.x + 1) / 2) * wide, y: box.top + ((1 - seen.y) / 2) * box.height };
+    return seen.z > 1 ? null : this.pixelOf(scenario, seen.x, seen.y);
   }
   /** Metres per pixel at the camera's target; in a plan everywhere. */
   get metresPerPixel(): number {
-    return this.rig.visible_m / this.height;
+    return this.rig.visible_m / this.part(0).high;
   }
   /** Draws now, so that the canvas can be read in the same task. */
   drawNow(): HTMLCanvasElement {
