@@ -39,7 +39,7 @@ Result<std::string> name_in(const json& body, const char* key) {
 }
 
 /// "material.viscosity=0.01:0.6", of an entry of "factors".
-Result<std::string> read_factor(const json& entry) {
+Result<std::string> read_factor_text(const json& entry) {
     if (!entry.is_object()) return Error{"factors: each is an object with key, low and high"};
     TALUS_TRY(twin::check_keys(entry, {"key", "low", "high"}));
     TALUS_ASSIGN(const std::string key, name_in(entry, "key"));
@@ -64,7 +64,7 @@ Status read_factors(const json& body, std::size_t most, WantedJob& wanted) {
         return Error{fmt::format("factors: must be a list of 1 to {}, each with key, low and high", most)};
     }
     for (const json& entry : *list) {
-        TALUS_ASSIGN(const std::string factor, read_factor(entry));
+        TALUS_ASSIGN(const std::string factor, read_factor_text(entry));
         TALUS_TRY(add_factor(wanted.ensemble, factor));
         wanted.factors.push_back(factor);
     }

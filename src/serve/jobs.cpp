@@ -21,7 +21,7 @@ namespace {
 using nlohmann::json;
 namespace fs = std::filesystem;
 
-constexpr int niceness = 10;  // a tenth of the open session's share where cores are short
+constexpr int job_niceness = 10;  // a tenth of the open session's share where cores are short
 constexpr std::uintmax_t longest_job = 1'000'000, longest_report = 256'000'000;
 constexpr int case_failed = 4, interrupted = 130;  // exit codes
 constexpr int most_of_a_kind = 100'000;
@@ -236,7 +236,7 @@ void Jobs::run(const EntryPtr& entry) {
         child.arguments = words_of(job);
         child.folder = folder_;
     }
-    child.niceness = niceness;
+    child.niceness = job_niceness;
     child.shall_end = [&] { return entry->stop || closing_; };
     child.on_line = [&](const std::string& line) {
         const auto event = parse_json(line);

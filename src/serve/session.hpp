@@ -119,7 +119,7 @@ class Session final : public Watcher {
     std::array<Bytes, Scenarios::max_count> states_, setups_;  // as messages; for those who join
     Bytes calibration_, alerts_;                               // likewise
     std::function<void(int, const RunAlerts&)> on_alerts_;
-    std::array<Bytes, Scenarios::max_count> depth_averaged_;   // likewise
+    std::array<Bytes, Scenarios::max_count> depth_averaged_;  // likewise
     std::function<void()> setups_changed_ = [] {};
     std::vector<Audience> audience_;
     /// Encoded frames, by cap.

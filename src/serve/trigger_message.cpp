@@ -29,8 +29,8 @@ std::optional<WallTime> parse_time(const std::string& text) {
     if (!plausible) return {};
     t.tm_year -= 1900;
     t.tm_mon -= 1;
-    const auto milliseconds = std::chrono::milliseconds(std::llround(1000 * second));
-    return std::chrono::system_clock::from_time_t(timegm(&t)) + milliseconds;
+    const auto past_minute = std::chrono::milliseconds(std::llround(1000 * second));
+    return std::chrono::system_clock::from_time_t(timegm(&t)) + past_minute;
 }
 
 }  // namespace

@@ -37,14 +37,14 @@ class Exchange {
     Exchange(const WebhookTarget& target, std::chrono::milliseconds limit, const std::function<bool()>& stop)
         : target_(target), limit_(limit), stop_(stop) {}
 
-    Status post(const std::string& json);
+    Status post(const std::string& body);
 
   private:
     /// Starts something asynchronous, which calls `done(error)`, and waits for it.
     template <class Start>
     Status wait(const char* what, const Start& start);
     template <class Stream>
-    Status exchange(Stream& stream, const std::string& json);
+    Status exchange(Stream& stream, const std::string& body);
     Status connect(tcp::socket& socket);
 
     const WebhookTarget& target_;
@@ -80,14 +80,14 @@ Status Exchange::connect(tcp::socket& socket) {
 }
 
 template <class Stream>
-Status Exchange::exchange(Stream& stream, const std::string& json) {
+Status Exchange::exchange(Stream& stream, const std::string& body) {
     http::request<http::string_body> request{http::verb::post, target_.path, 11};
     const bool usual = target_.port == (target_.tls ? "443" : "80");
     request.set(http::field::host, usual ? target_.host : target_.shown());
     request.set(http::field::user_agent, "talus");
     request.set(http::field::content_type, "application/json");
     if (!target_.authorization.empty()) request.set(http::field::authorization, target_.authorization);
-    request.body() = json;
+    request.body() = body;
     request.prepare_payload();
     TALUS_TRY(wait("sending", [&](auto done) {
         http::async_write(stream, request, [done](auto error, std::size_t) { done(error); });
@@ -103,11 +103,11 @@ Status Exchange::exchange(Stream& stream, const std::string& json) {
     return Error{fmt::format("{}: answered with status {}", target_.shown(), status)};
 }
 
-Status Exchange::post(const std::string& json) {
+Status Exchange::post(const std::string& body) {
     if (!target_.tls) {
         tcp::socket socket(io_);
         TALUS_TRY(connect(socket));
-        const Status sent = exchange(socket, json);
+        const Status sent = exchange(socket, body);
         boost::system::error_code ignored;
         socket.close(ignored);
         io_.restart();
@@ -127,7 +127,7 @@ Status Exchange::post(const std::string& json) {
     TALUS_TRY(connect(stream.next_layer()));
     Status sent =
         wait("the certificate", [&](auto done) { stream.async_handshake(asio::ssl::stream_base::client, done); });
-    if (sent) sent = exchange(stream, json);
+    if (sent) sent = exchange(stream, body);
     stream.next_layer().close(error);
     io_.restart();
     io_.poll();
@@ -175,10 +175,10 @@ Result<WebhookTarget> read_webhook(const std::string& text) {
     return target;
 }
 
-Status post_webhook(const WebhookTarget& target, const std::string& json, std::chrono::milliseconds limit,
+Status post_webhook(const WebhookTarget& target, const std::string& body, std::chrono::milliseconds limit,
                     const std::function<bool()>& stop) {
     Exchange exchange(target, limit, stop);
-    return exchange.post(json);
+    return exchange.post(body);
 }
 
 }  // namespace talus::serve

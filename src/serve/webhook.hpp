@@ -25,7 +25,7 @@ struct WebhookTarget {
 /// Posts JSON and waits for the answer, `limit` at most for connecting and again for the rest. A certificate must be
 /// valid for the host. `stop` is asked ten times a second. Errors: no connection, no answer in time, a status other
 /// than 2xx; they name host and port.
-[[nodiscard]] Status post_webhook(const WebhookTarget& target, const std::string& json, std::chrono::milliseconds limit,
+[[nodiscard]] Status post_webhook(const WebhookTarget& target, const std::string& body, std::chrono::milliseconds limit,
                                   const std::function<bool()>& stop);
 
 }  // namespace talus::serve

@@ -15,8 +15,8 @@ constexpr std::uint32_t worth_a_card = 50000;
 
 Status check_backend(params::BackendChoice choice) {
     if (choice != params::BackendChoice::cuda || device::card()) return {};
-    return Error{fmt::format("backend \"cuda\" is refused; {}: take \"cpu\", or \"auto\"",
-                             device::card().error().message)};
+    return Error{
+        fmt::format("backend \"cuda\" is refused; {}: take \"cpu\", or \"auto\"", device::card().error().message)};
 }
 
 params::BackendChoice settled_backend(params::BackendChoice choice, std::uint32_t particles) {

@@ -76,8 +76,7 @@ struct HeightField {
         const auto column = truncated(larger(Real(0), smaller(Real(last_column - 1), u)));
         const auto row = truncated(larger(Real(0), smaller(Real(last_row - 1), v)));
         using Index = std::remove_const_t<decltype(column)>;
-        return Cell<Index, Real>{Index(row * stride + column), u - from_index<Real>(column),
-                                 v - from_index<Real>(row)};
+        return Cell<Index, Real>{Index(row * stride + column), u - from_index<Real>(column), v - from_index<Real>(row)};
     }
 
     /// The weights of the value and the rise at one end of a cell, and their derivatives.

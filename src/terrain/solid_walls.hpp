@@ -138,7 +138,7 @@ TALUS_DEVICE SolidSample<Real> SolidWalls::nearest(const Vec3<Real>& p, float gr
 
 template <class Real>
 TALUS_DEVICE SolidSample<Real> SolidWalls::second_nearest(const Vec3<Real>& p, const SolidSample<Real>& nearest,
-                                                 float grain_rank) const {
+                                                          float grain_rank) const {
     if (nearest.building < 0 || nearest.distance < 0) return {};
     constexpr double same_direction = 0.5;  // cosine
     const double x = p.x, y = p.y, z = p.z;
