@@ -24,6 +24,7 @@ struct Pairs {
 std::optional<TwoModelMean> mean_of(const Pairs& pairs, const Value& value) {
     const auto values = [&](const std::vector<const RunRecord*>& runs) {
         std::vector<double> all;
+        all.reserve(runs.size());
         for (const RunRecord* run : runs) all.push_back(value(*run));
         return all;
     };
