@@ -18,6 +18,7 @@ Status check_name(const ParsedScene& parsed, const std::string& path, const std:
                   const std::vector<Entry>& entries) {
     if (name.empty()) return {};
     std::vector<std::string> names;
+    names.reserve(entries.size());
     for (const Entry& entry : entries) names.push_back(entry.name);
     const auto found = std::count(names.begin(), names.end(), name);
     if (found == 1) return {};

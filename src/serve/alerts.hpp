@@ -81,7 +81,7 @@ class Alerts {
     AlertSettings settings_;
     std::shared_ptr<Runs> runs_ = std::make_shared<Runs>();  // for the loop's thread alone
 
-    struct Told {
+    struct Told {  // NOLINT(bugprone-exception-escape): moving JSON does not throw
         RunAlerts alerts;
         nlohmann::json reading;                                  // the last one; null: none
         std::map<std::size_t, std::string> raised_at, delivery;  // by alarm

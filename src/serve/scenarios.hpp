@@ -33,6 +33,7 @@ struct FrameSet {
 };
 
 /// What started a run, and the alarms that it has raised.
+// NOLINTNEXTLINE(bugprone-exception-escape): moving JSON does not throw
 struct RunAlerts {
     nlohmann::json trigger;  ///< its action; null: people started the run
     std::vector<twin::RaisedAlarm> alarms;

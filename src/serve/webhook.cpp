@@ -107,7 +107,7 @@ Status Exchange::post(const std::string& body) {
     if (!target_.tls) {
         tcp::socket socket(io_);
         TALUS_TRY(connect(socket));
-        const Status sent = exchange(socket, body);
+        Status sent = exchange(socket, body);
         boost::system::error_code ignored;
         socket.close(ignored);
         io_.restart();
