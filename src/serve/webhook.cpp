@@ -40,7 +40,8 @@ class Exchange {
     Status post(const std::string& body);
 
   private:
-    /// Starts something asynchronous, which calls `done(error)`, and waits for it.
+    /// Starts something asynchronous, which calls `done(error)`, and waits for it. After an error nothing may run any
+    /// more: what took too long still refers to what it was given.
     template <class Start>
     Status wait(const char* what, const Start& start);
     template <class Stream>
@@ -107,12 +108,7 @@ Status Exchange::post(const std::string& body) {
     if (!target_.tls) {
         tcp::socket socket(io_);
         TALUS_TRY(connect(socket));
-        Status sent = exchange(socket, body);
-        boost::system::error_code ignored;
-        socket.close(ignored);
-        io_.restart();
-        io_.poll();  // what was waiting ends
-        return sent;
+        return exchange(socket, body);
     }
     asio::ssl::context context(asio::ssl::context::tls_client);
     boost::system::error_code error;
@@ -128,9 +124,6 @@ Status Exchange::post(const std::string& body) {
     Status sent =
         wait("the certificate", [&](auto done) { stream.async_handshake(asio::ssl::stream_base::client, done); });
     if (sent) sent = exchange(stream, body);
-    stream.next_layer().close(error);
-    io_.restart();
-    io_.poll();
     return sent;
 }
 
