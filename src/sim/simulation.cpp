@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <limits>
+#include <mutex>
 #include <utility>
 #include <vector>
 
@@ -70,6 +71,9 @@ Simulation::Simulation(Model model, Ground ground, State state, InflowFeeder inf
 
 /// Copies the particles back if a step has moved them on a device.
 void Simulation::fetch() const {
+    if (device_ == nullptr) return;
+    static std::mutex copying;  // several threads may read a run between two of its steps
+    const std::lock_guard lock(copying);
     if (std::exchange(device_is_newer_, false)) device_->fetch(state_);
 }
 
