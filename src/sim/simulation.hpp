@@ -42,8 +42,8 @@ class Simulation {
 
     [[nodiscard]] const Model& model() const { return model_; }
     [[nodiscard]] const Ground& ground() const { return ground_; }
-    /// After steps on a device its particles are copied back first, so not from several threads at once. Throws a
-    /// DeviceFailure if that fails.
+    /// After steps on a device its particles are copied back first. Several threads may do so between two steps. Throws
+    /// a DeviceFailure if that fails.
     [[nodiscard]] const State& state() const {
         fetch();
         return state_;
