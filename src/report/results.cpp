@@ -84,8 +84,7 @@ Json status(const run::RunResult& result) {
             {"simulated_time_s", result.simulated_time}};
 }
 
-Json verdict(const run::RunResult& result, const std::vector<run::Comparison>& comparisons) {
-    const run::NumericalVerdict said = numerical_verdict(result, comparisons);
+Json verdict(const run::NumericalVerdict& said) {
     const Json converged = said.converged == run::Answer::unknown ? Json() : Json(said.converged == run::Answer::yes);
     std::string text = said.text;
     text[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(text[0])));
@@ -205,7 +204,14 @@ Json layers(const scene::Scene& scene, const run::RunResult& result) {
                 enough ? "" : warning, enough);
 }
 
-Json quality(const scene::Scene& scene, const run::RunResult& result) {
+Json convergence(const run::NumericalVerdict& verdict) {
+    if (verdict.converged == run::Answer::unknown) {
+        return fact("Convergence", verdict.text + "; talus run --convergence compares with finer numerics");
+    }
+    return fact("Convergence", "", verdict.text, verdict.converged == run::Answer::yes);
+}
+
+Json quality(const scene::Scene& scene, const run::RunResult& result, const run::NumericalVerdict& verdict) {
     const observe::Observation& o = result.observation;
     const char* state = result.status == run::RunStatus::complete      ? "complete"
                         : result.status == run::RunStatus::interrupted ? "partial: interrupted"
@@ -261,7 +267,7 @@ Json quality(const scene::Scene& scene, const run::RunResult& result) {
                         scene.spec.solver.iteration_count, scene.spec.solver.extra_iteration_count,
                         significant(100 * c.time_share_iterated, 2), fixed(c.mean_iterations, 1))
                   : fmt::format("{} per step", scene.spec.solver.iteration_count)),
-         balance});
+         convergence(verdict), balance});
     return all;
 }
 
@@ -327,15 +333,16 @@ Json results_head(std::string_view format, const scene::Scene& scene) {
 
 Json run_results(const scene::Scene& scene, const run::RunResult& result,
                  const std::vector<run::Comparison>& comparisons) {
+    const run::NumericalVerdict said = numerical_verdict(result, comparisons);
     Json all = results_head("talus results", scene);
     all.update({{"status", status(result)},
-                {"verdict", verdict(result, comparisons)},
+                {"verdict", verdict(said)},
                 {"depth_averaged", result.depth_averaged() ? Json{{"grid_cell_m", result.grid_cell}} : Json()},
                 {"compression", compression(scene, result)},
                 {"flow_thickness", flow_thickness(scene, result)},
                 {"key_figures", key_figures(scene, result)},
                 {"observations", observations(scene, result)},
-                {"quality", quality(scene, result)},
+                {"quality", quality(scene, result, said)},
                 {"buildings", buildings(scene, result)},
                 {"barriers", barriers(result)},
                 {"impact_filter_window_s", scene.spec.outputs.impact_filter_window},
