@@ -1,6 +1,6 @@
 // The page of the live twin in Chromium, with real clicks and keys.
 // Usage: node twin_test.mjs OUTPUT_FOLDER TALUS serve SCENE. TALUS_PARTS=PART,... runs those parts alone, TALUS_ONLY=PATTERN the checks
-// whose name matches. No check is a clock: what is waited for is a state of the server or the page, and a run that has to go on while
+// whose name matches, TALUS_WAIT_S=SECONDS waits less than five minutes for what does not come. No check is a clock: what is waited for is a state of the server or the page, and a run that has to go on while
 // the page is looked at goes slowly.
 // Exit code 77: skipped, the browser or its driver is missing.
 import { resolve } from "node:path";

@@ -10,7 +10,7 @@ import { createInterface } from "node:readline";
 export const programEnvironment = Object.fromEntries(Object.entries(process.env).filter(([name]) => !/^TALUS_(?!DATA$|SIMD$)/.test(name)));
 
 /** What has not come after so long does not come: nothing is measured by it, and only a failing test waits for it. */
-export const limit_ms = 300_000;
+export const limit_ms = 1000 * Number(process.env.TALUS_WAIT_S ?? 300);
 /** A check as a whole, with all its waits. */
 const longest_check_ms = 600_000;
 /** What is or was waited for last. */
@@ -111,9 +111,9 @@ export class Run {
       await this.last?.screenshot({ path: join(this.output, `failed-${this.failed}.png`), timeout: 30_000 }).catch(() => {});
     }
   }
-  /** finest: with the whole mesh of the ground; a coarser one is drawn in a fraction of the time. look: natural ones take far longer to draw without a graphics card. edits: how runs that have begun are edited; null: not chosen yet. touch: as on a phone. late: which texts of the server come late, as from a busy one. */
-  async open(link, { width = 1280, height = 720, reduced = true, name, finest = false, edits = "now", look = "scientific", touch = false, late } = {}) {
-    const context = await this.browser.newContext({ viewport: { width, height }, reducedMotion: reduced ? "reduce" : "no-preference", acceptDownloads: true, hasTouch: touch, isMobile: touch });
+  /** finest: with the whole mesh of the ground; a coarser one is drawn in a fraction of the time. look: natural ones take far longer to draw without a graphics card. edits: how runs that have begun are edited; null: not chosen yet. touch: as on a phone. late: which texts of the server come late, as from a busy one. scale: pixels of the screen per pixel of the page. prepare: called with the page before it loads. */
+  async open(link, { width = 1280, height = 720, reduced = true, name, finest = false, edits = "now", look = "scientific", touch = false, late, scale = 1, prepare } = {}) {
+    const context = await this.browser.newContext({ viewport: { width, height }, deviceScaleFactor: scale, reducedMotion: reduced ? "reduce" : "no-preference", acceptDownloads: true, hasTouch: touch, isMobile: touch });
     const page = await context.newPage();
     if (name) await page.addInitScript((n) => localStorage.setItem("talus-name", n), name);
     await page.addInitScript((l) => localStorage.getItem("talus-look") ?? localStorage.setItem("talus-look", l), look);
@@ -135,6 +135,7 @@ export class Run {
         toServer.onMessage((message) => (typeof message === "string" && late.test(message) ? setTimeout(() => toPage.send(message), 1000) : toPage.send(message)));
       });
     }
+    await prepare?.(page);
     const begun = Date.now();
     await page.goto(link);
     await shows(page, () => window.talusStats?.frames > 0 && document.querySelector(".transport"), "the first picture");

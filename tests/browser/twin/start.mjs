@@ -132,7 +132,7 @@ export async function testStart(run) {
     await until(() => ask("ensembles"), ({ ensembles }) => ensembles?.length === 1 && ensembles[0].runs === 3, "the ensemble is among the maps");
   });
 
-  await run.check("a calibration and a validation are started, one waits for the other, both are cancelled, and one is deleted", async () => {
+  await run.check("a calibration and a validation are started, one waits for the other, one is cancelled, continued and cancelled again, and the other is deleted", async () => {
     await page.goto(`http://127.0.0.1:${server.port}/#start`);
     await page.locator(".start-list").first().waitFor();
     await page.click("text=New job");
@@ -156,6 +156,10 @@ export async function testStart(run) {
     await page.locator("[data-job=calibration-1][data-state=cancelled]").waitFor();
     await page.locator("[data-job=validation-1][data-state=done]").waitFor();
     assert.match(await waiting.textContent(), /values pass, 0 fail/);
+    await page.click("[data-job=calibration-1] >> text=Continue");
+    await page.locator("[data-job=calibration-1][data-state=running]").waitFor();
+    await page.click("[data-job=calibration-1] >> text=Cancel");
+    await page.locator("[data-job=calibration-1][data-state=cancelled]").waitFor();
     await waiting.locator("[aria-label^=Delete]").click();
     await page.click("dialog .primary");
     await until(() => waiting.count(), (n) => n === 0, "the validation is gone");
