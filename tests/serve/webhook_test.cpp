@@ -1,6 +1,11 @@
+#include "serve/webhook.hpp"
+
 #include <array>
 #include <atomic>
+#include <csignal>
+#include <fstream>
 #include <mutex>
+#include <openssl/ssl.h>
 #include <poll.h>
 #include <sys/socket.h>
 #include <thread>
@@ -8,9 +13,10 @@
 
 #include <gmock/gmock.h>
 
+#include "core/temporary_folder.hpp"
 #include "serve/alerts_fixture.hpp"
+#include "serve/certificate.hpp"
 #include "serve/mqtt_link.hpp"
-#include "serve/webhook.hpp"
 
 namespace talus::test {
 namespace {
@@ -135,6 +141,94 @@ TEST_F(AlertsTest, a_receiver_that_does_not_answer_holds_nothing_up_and_is_told_
     EXPECT_THAT(log(), HasSubstr("tried 3 times"));
     EXPECT_NE(state("B")["status"], "fault");
     close(waits);
+}
+
+/// Takes posts over TLS and answers them with 200.
+class TlsReceiver {
+  public:
+    explicit TlsReceiver(const Pair& pair) : context_(SSL_CTX_new(TLS_server_method())), file_(listen_anywhere(port_)) {
+        BIO *certificate = BIO_new_mem_buf(pair.certificate.data(), static_cast<int>(pair.certificate.size())),
+            *key = BIO_new_mem_buf(pair.key.data(), static_cast<int>(pair.key.size()));
+        X509* read = PEM_read_bio_X509(certificate, nullptr, nullptr, nullptr);
+        EVP_PKEY* secret = PEM_read_bio_PrivateKey(key, nullptr, nullptr, nullptr);
+        SSL_CTX_use_certificate(context_, read);
+        SSL_CTX_use_PrivateKey(context_, secret);
+        X509_free(read);
+        EVP_PKEY_free(secret);
+        BIO_free(certificate);
+        BIO_free(key);
+        thread_ = std::thread([this] { run(); });
+    }
+    ~TlsReceiver() {
+        stop_ = true;
+        thread_.join();
+        close(file_);
+        SSL_CTX_free(context_);
+    }
+    [[nodiscard]] std::uint16_t port() const { return port_; }
+    [[nodiscard]] std::string request() {
+        const std::lock_guard lock(mutex_);
+        return request_;
+    }
+
+  private:
+    void run() {
+        while (!stop_) {
+            pollfd waiting{file_, POLLIN, 0};
+            if (poll(&waiting, 1, 50) <= 0) continue;
+            const int client = accept(file_, nullptr, nullptr);
+            SSL* session = SSL_new(context_);
+            SSL_set_fd(session, client);
+            if (SSL_accept(session) == 1) answer(session);
+            SSL_free(session);
+            close(client);
+        }
+    }
+    void answer(SSL* session) {
+        std::string request;
+        std::array<char, 4096> piece{};
+        while (request.empty() || request.back() != '}') {
+            const int got = SSL_read(session, piece.data(), static_cast<int>(piece.size()));
+            if (got <= 0) return;
+            request.append(piece.data(), static_cast<std::size_t>(got));
+        }
+        const std::string answer = "HTTP/1.1 200 OK\r\nContent-Length: 0\r\nConnection: close\r\n\r\n";
+        SSL_write(session, answer.data(), static_cast<int>(answer.size()));
+        const std::lock_guard lock(mutex_);
+        request_ = request;
+    }
+
+    SSL_CTX* context_;
+    std::uint16_t port_ = 0;
+    int file_;
+    std::atomic<bool> stop_ = false;
+    std::mutex mutex_;
+    std::string request_;
+    std::thread thread_;
+};
+
+TEST(Webhook, goes_over_tls_only_to_a_host_whose_certificate_is_valid) {
+    std::signal(SIGPIPE, SIG_IGN);  // of the receiver, which is hung up on
+    const Pair trusted = self_signed("DNS:localhost"), other = self_signed("DNS:elsewhere.example");
+    const TemporaryFolder folder;
+    const std::string authorities = (folder.path() / "authorities").string();
+    std::ofstream(authorities) << trusted.certificate << other.certificate;
+    TlsReceiver receiver(trusted), elsewhere(other), stranger(self_signed("DNS:localhost"));
+    const auto post = [](const TlsReceiver& to) {
+        const auto target = *serve::read_webhook(fmt::format("https://localhost:{}/hook\nBearer token\n", to.port()));
+        return serve::post_webhook(target, "{\"alarm\": 1}", Milliseconds(20000), [] { return false; });
+    };
+    ASSERT_EQ(setenv("SSL_CERT_FILE", authorities.c_str(), 1), 0);  // where OpenSSL looks for authorities
+    const Status sent = post(receiver), to_another_host = post(elsewhere), to_a_stranger = post(stranger);
+    unsetenv("SSL_CERT_FILE");
+    ASSERT_TRUE(sent) << sent.error().message;
+    EXPECT_THAT(receiver.request(), HasSubstr("POST /hook HTTP/1.1"));
+    EXPECT_THAT(receiver.request(), HasSubstr("{\"alarm\": 1}"));
+    for (const Status& refused : {to_another_host, to_a_stranger}) {
+        ASSERT_FALSE(refused);
+        EXPECT_THAT(refused.error().message, HasSubstr("the certificate"));
+    }
+    EXPECT_EQ(elsewhere.request() + stranger.request(), "");
 }
 
 TEST_F(AlertsTest, an_address_that_cannot_be_used_is_refused_without_repeating_it) {
