@@ -76,15 +76,22 @@ void add_alerts(CLI::App& app, AlertArguments& arguments) {
                  "send alarms of runs that people start, too; default: of those that a trigger starts");
 }
 
-Result<serve::AlertSettings> read_alerts(const AlertArguments& arguments, const params::SceneSpec& scene,
-                                         serve::Tokens& tokens) {
-    serve::AlertSettings settings;
-    const bool listens = !arguments.trigger_token_file.empty(), posts = !arguments.webhook_file.empty();
-    if (listens && scene.triggers.empty()) return Error{"--trigger-token-file: the scene has no [[trigger]]"};
-    if (posts && scene.alarms.empty()) return Error{"--webhook-file: the scene has no [[alarm]]"};
+Status check_alerts(const AlertArguments& arguments, const params::SceneSpec& scene) {
+    if (!arguments.trigger_token_file.empty() && scene.triggers.empty()) {
+        return Error{"--trigger-token-file: the scene has no [[trigger]]"};
+    }
+    if (!arguments.webhook_file.empty() && scene.alarms.empty()) {
+        return Error{"--webhook-file: the scene has no [[alarm]]"};
+    }
     if (!arguments.mqtt.empty() && scene.triggers.empty() && scene.alarms.empty()) {
         return Error{"--mqtt: the scene has neither [[trigger]] nor [[alarm]]"};
     }
+    return {};
+}
+
+Result<serve::AlertSettings> read_alerts(const AlertArguments& arguments, serve::Tokens& tokens) {
+    serve::AlertSettings settings;
+    const bool listens = !arguments.trigger_token_file.empty(), posts = !arguments.webhook_file.empty();
     if (listens) {
         TALUS_ASSIGN(tokens.trigger, read_secret("--trigger-token-file", arguments.trigger_token_file));
         if (const Status good = serve::check_tokens(tokens); !good) {

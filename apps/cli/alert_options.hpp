@@ -21,9 +21,10 @@ struct AlertArguments {
 
 void add_alerts(CLI::App& app, AlertArguments& arguments);
 
-/// Sets the token of triggers in `tokens`. Errors name the option: a file that cannot be read or used, an option
-/// without what it needs, a scene that has neither triggers nor alarms.
-[[nodiscard]] Result<serve::AlertSettings> read_alerts(const AlertArguments& arguments, const params::SceneSpec& scene,
-                                                       serve::Tokens& tokens);
+/// Sets the token of triggers in `tokens`. Errors name the option: a file that cannot be read or used.
+[[nodiscard]] Result<serve::AlertSettings> read_alerts(const AlertArguments& arguments, serve::Tokens& tokens);
+
+/// Errors name the option for which a scene has neither triggers nor alarms.
+[[nodiscard]] Status check_alerts(const AlertArguments& arguments, const params::SceneSpec& scene);
 
 }  // namespace talus::cli

@@ -125,7 +125,10 @@ int serve_command(const ServeArguments& arguments) {
     if (!settled) return fail(exit_code::bad_input, settled.error().message);
     if (*settled && say) say(cost_text(**settled));
     if (found->unpacked) name_unpacked_files(*loaded, found->unpacked->path(), found->name);
-    auto alerts = read_alerts(arguments.alerts, loaded->spec, *tokens);
+    if (const Status fits = check_alerts(arguments.alerts, loaded->spec); !fits) {
+        return fail(exit_code::bad_input, fits.error().message);
+    }
+    auto alerts = read_alerts(arguments.alerts, *tokens);
     if (!alerts) return fail(exit_code::bad_input, alerts.error().message);
     if (watch.stop_requested()) return exit_code::success;
     const auto scene = std::make_shared<const scene::Scene>(std::move(*loaded));

@@ -1,5 +1,6 @@
 #include "start.hpp"
 
+#include <cstdio>
 #include <cstdlib>
 #include <fcntl.h>
 #include <filesystem>
@@ -17,6 +18,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "alert_options.hpp"
 #include "command.hpp"
 #include "core/input_file.hpp"
 #include "core/temporary_folder.hpp"
@@ -35,6 +37,7 @@ struct StartArguments {
     std::string folder;  ///< empty: the user's data folder
     int port = 0;
     std::vector<std::string> tokens;  ///< as of talus serve
+    AlertArguments alerts;
     bool browser = true, json = false;
 };
 
@@ -46,10 +49,14 @@ sessions. talus without arguments does the same at a desktop. With a scene or a 
 Only this computer can reach it. Own scenes, saved sessions and the list of recent scenes are kept in
 $XDG_DATA_HOME/talus, by default ~/.local/share/talus.
 
+A scene with [[trigger]] and [[alarm]] starts runs when a program or a gauge says so, and tells others what is coming,
+with the same options as talus serve: docs/triggers.md. They are used for every scene that has them.
+  talus start my_scene.toml --trigger-token-file token.txt --mqtt 127.0.0.1 --webhook-file webhook.txt
+
 Exit codes:
     0  ended on the page or by Ctrl-C
     1  the machine failed: out of memory, no temporary folder
-    2  bad input: command line
+    2  bad input: command line or a file it names
   130  ended at once by a second Ctrl-C
 )";
 
@@ -97,6 +104,8 @@ int start_command(const StartArguments& arguments) {
     }
     auto tokens = choose_tokens(arguments.tokens);
     if (!tokens) return fail(exit_code::bad_input, tokens.error().message);
+    auto alerts = read_alerts(arguments.alerts, *tokens);
+    if (!alerts) return fail(exit_code::bad_input, alerts.error().message);
     TemporaryFolder folder;
     if (folder.path().empty()) return fail(exit_code::failure, "cannot make a temporary folder; set TMPDIR");
     watch.remove_at_once(folder.path());
@@ -111,6 +120,8 @@ int start_command(const StartArguments& arguments) {
     options.tokens = std::move(*tokens);
     options.export_folder = folder.path();
     options.scenario.fault_folder = start.folder / "faults";
+    options.alerts = std::move(*alerts);
+    options.alerts.log = [](const std::string& what) { (void)std::fputs((what + "\n").c_str(), stderr); };
     options.on_failure = [&](const std::string& message) {
         {
             const std::lock_guard lock(mutex);
@@ -169,6 +180,7 @@ void add_start(CLI::App& program, std::vector<Command>& commands) {
                     "new tokens each time")
         ->type_name("TOKEN")
         ->allow_extra_args(false);
+    add_alerts(*app, start->alerts);
     app->add_flag("--json", start->json, "print the links as one JSON object on stdout");
     app->footer(start_help);
     commands.push_back({app, [start] { return start_command(*start); }});

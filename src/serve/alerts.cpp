@@ -31,7 +31,11 @@ json alarm_json(const twin::RaisedAlarm& alarm) {
 }  // namespace
 
 Alerts::Alerts(Session& session, std::shared_ptr<const scene::Scene> scene, AlertSettings settings)
-    : session_(session), scene_(std::move(scene)), settings_(std::move(settings)) {}
+    : session_(session), scene_(std::move(scene)), settings_(std::move(settings)) {
+    const bool triggers = !scene_->spec.triggers.empty();
+    settings_.http = settings_.http && triggers;
+    if (!triggers && scene_->spec.alarms.empty()) settings_.mqtt.reset();
+}
 
 Status Alerts::open() {
     session_.on_alerts([this](int scenario, const RunAlerts& alerts) { follow(scenario, alerts); });
@@ -53,7 +57,7 @@ Status Alerts::open() {
         TALUS_ASSIGN(link_, MqttLink::open(*settings_.mqtt, std::move(listener)));
     }
     sender_ = std::make_unique<AlarmSender>(settings_.sender, link_.get());
-    if (settings_.triggers()) session_.loop().post([](Scenarios& all) { all.reserve_for_triggers(); });
+    if (listens()) session_.loop().post([](Scenarios& all) { all.reserve_for_triggers(); });
     return {};
 }
 
@@ -90,7 +94,8 @@ void Alerts::tell() {
 }
 
 void Alerts::take(const std::string& text, const std::string& source, const Respond& respond) {
-    if (!settings_.triggers()) {
+    if (scene_->spec.triggers.empty()) return respond(error_response(409, "the scene has no [[trigger]]"));
+    if (!listens()) {
         return respond(error_response(409, "triggers are off; start the server with --trigger-token-file or --mqtt"));
     }
     if (too_many()) {  // not noted: notes of a flood would drive out all others

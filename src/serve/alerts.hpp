@@ -28,14 +28,13 @@ struct AlertSettings {
     AlarmSender::Settings sender;
     bool all_runs = false;                             ///< alarms of runs that people started are sent, too
     std::function<void(const std::string&)> log = {};  ///< from the server's thread
-
-    [[nodiscard]] bool triggers() const { return http || mqtt; }
 };
 
 /// Triggers and alarms of a session (docs/triggers.md): takes messages, starts runs and feeds their gauges, sends
 /// alarms, and tells everybody. For the server's thread.
 class Alerts {
   public:
+    /// Of `settings` only what the scene has triggers or alarms for is used.
     Alerts(Session& session, std::shared_ptr<const scene::Scene> scene, AlertSettings settings);
     Alerts(const Alerts&) = delete;
     Alerts& operator=(const Alerts&) = delete;
@@ -69,6 +68,9 @@ class Alerts {
     static void decide(Scenarios& all, Runs& runs, const Job& job, const Answered& answered);
     static void start(Scenarios& all, Run& run, const Job& job, const Answered& answered);
     static void feed(Scenarios& all, int index, const Run& run, const Job& job, const Answered& answered);
+    [[nodiscard]] bool listens() const {
+        return !scene_->spec.triggers.empty() && (settings_.http || settings_.mqtt);
+    }
     [[nodiscard]] bool too_many();
     void refuse(int status, const std::string& sentence, const std::string& source, const Respond& respond);
     void note(const std::string& sentence);

@@ -1,10 +1,14 @@
 #include "serve/mqtt_link.hpp"
 
 #include <algorithm>
+#include <cerrno>
 #include <charconv>
+#include <chrono>
 #include <condition_variable>
 #include <mutex>
 #include <set>
+#include <system_error>
+#include <thread>
 #include <utility>
 
 #include <fmt/format.h>
@@ -45,10 +49,12 @@ struct MqttLink::Parts {
     MqttSettings settings;
     Listener listener;
     mosquitto* client = nullptr;
-    std::mutex mutex;  // guards the next three
+    std::mutex mutex;  // guards the next four
     std::condition_variable changed;
-    bool connected = false;
+    bool connected = false, ending = false;
     std::set<int> acknowledged;
+    std::string failure;  // of the connection, as the library puts it; of the thread
+    std::thread thread;
 
     [[nodiscard]] std::string listened() const { return settings.topic + "/trigger"; }
     [[nodiscard]] std::string published() const { return settings.topic + "/alarm"; }
@@ -61,6 +67,10 @@ struct MqttLink::Parts {
         listener.state(now, why);
     }
     Status start();
+    void set_callbacks();
+    void run();
+    /// Connects, and serves the connection until it breaks.
+    int serve_once(bool first);
 };
 
 Status MqttLink::Parts::start() {
@@ -80,14 +90,25 @@ Status MqttLink::Parts::start() {
         const int code = mosquitto_tls_set(client, settings.authority.c_str(), nullptr, nullptr, nullptr, nullptr);
         if (code != MOSQ_ERR_SUCCESS) return refused("certificate authority", code);
     }
-    mosquitto_reconnect_delay_set(client, 1, 30, true);
+    set_callbacks();
+    mosquitto_threaded_set(client, true);  // publish() is called on another thread than the loop
+    thread = std::thread([this] { run(); });
+    return {};
+}
+
+void MqttLink::Parts::set_callbacks() {
     mosquitto_connect_callback_set(client, [](mosquitto* c, void* self, int code) {
         auto& parts = *static_cast<Parts*>(self);
-        if (code == 0) mosquitto_subscribe(c, nullptr, parts.listened().c_str(), 1);
-        parts.set_connected(code == 0, code == 0 ? "" : mosquitto_connack_string(code));
+        if (code != 0) {
+            parts.failure = mosquitto_connack_string(code);
+            return;
+        }
+        mosquitto_subscribe(c, nullptr, parts.listened().c_str(), 1);
+        parts.set_connected(true, "");
     });
-    mosquitto_disconnect_callback_set(client, [](mosquitto*, void* self, int code) {
-        static_cast<Parts*>(self)->set_connected(false, code == 0 ? "closed" : mosquitto_strerror(code));
+    // The reason of a connection that fails on the way, such as a certificate that is not trusted, is only logged.
+    mosquitto_log_callback_set(client, [](mosquitto*, void* self, int level, const char* text) {
+        if (level == MOSQ_LOG_ERR) static_cast<Parts*>(self)->failure = text;
     });
     mosquitto_publish_callback_set(client, [](mosquitto*, void* self, int id) {
         auto& parts = *static_cast<Parts*>(self);
@@ -104,12 +125,51 @@ Status MqttLink::Parts::start() {
             std::min<std::size_t>(static_cast<std::size_t>(message->payloadlen), largest_trigger_message + 1);
         static_cast<Parts*>(self)->listener.message({static_cast<const char*>(message->payload), size});
     });
-    constexpr int keep_alive = 30;  // s
-    const int code = mosquitto_connect_async(client, settings.host.c_str(), settings.port, keep_alive);
-    // A broker that cannot be reached now is tried again by the thread.
-    if (code == MOSQ_ERR_INVAL) return refused("connecting", code);
-    const int begun = mosquitto_loop_start(client);
-    return begun == MOSQ_ERR_SUCCESS ? Status() : refused("starting", begun);
+}
+
+int MqttLink::Parts::serve_once(bool first) {
+    using Clock = std::chrono::steady_clock;
+    constexpr int keep_alive = 30, wait = 200;  // s, ms
+    // Over TLS the library's loop does not notice that a connection was refused.
+    const auto latest_answer = Clock::now() + settings.answer_limit;
+    int code = first ? mosquitto_connect_async(client, settings.host.c_str(), settings.port, keep_alive)
+                     : mosquitto_reconnect_async(client);
+    while (code == MOSQ_ERR_SUCCESS) {
+        {
+            const std::lock_guard lock(mutex);
+            if (ending) return code;
+            if (!connected && Clock::now() > latest_answer) {
+                if (failure.empty()) failure = "no answer";
+                return MOSQ_ERR_CONN_LOST;
+            }
+        }
+        code = mosquitto_loop(client, wait, 1);
+    }
+    return code;
+}
+
+/// The library's own thread gives up for good after some failures: a name that is not found for a moment, a certificate
+/// that has expired and is renewed.
+void MqttLink::Parts::run() {
+    using std::chrono::seconds;
+    constexpr seconds shortest_wait(1), longest_wait(30);
+    seconds wait = shortest_wait;
+    for (bool first = true;; first = false) {
+        failure.clear();
+        errno = 0;
+        const int code = serve_once(first);
+        const int system_code = errno;
+        std::unique_lock lock(mutex);
+        if (ending) return;
+        wait = connected ? shortest_wait : std::min(2 * wait, longest_wait);
+        lock.unlock();
+        if (failure.empty()) {
+            failure = code == MOSQ_ERR_ERRNO ? std::system_category().message(system_code) : mosquitto_strerror(code);
+        }
+        set_connected(false, failure);
+        lock.lock();
+        if (changed.wait_for(lock, wait, [this] { return ending; })) return;
+    }
 }
 
 Result<std::unique_ptr<MqttLink>> MqttLink::open(const MqttSettings& settings, Listener listener) {
@@ -123,10 +183,16 @@ Result<std::unique_ptr<MqttLink>> MqttLink::open(const MqttSettings& settings, L
 }
 
 MqttLink::~MqttLink() {
-    if (parts_->client == nullptr) return;
-    mosquitto_disconnect(parts_->client);
-    mosquitto_loop_stop(parts_->client, true);
-    mosquitto_destroy(parts_->client);
+    if (parts_->thread.joinable()) {
+        {
+            const std::lock_guard lock(parts_->mutex);
+            parts_->ending = true;
+        }
+        parts_->changed.notify_all();
+        mosquitto_disconnect(parts_->client);  // wakes the loop
+        parts_->thread.join();
+    }
+    if (parts_->client != nullptr) mosquitto_destroy(parts_->client);
 }
 
 Status MqttLink::publish(const std::string& payload, std::chrono::milliseconds limit,

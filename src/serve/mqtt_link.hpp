@@ -13,9 +13,10 @@ namespace talus::serve {
 struct MqttSettings {
     std::string host;
     int port = 1883;
-    std::string topic = "talus";  ///< listens to TOPIC/trigger, publishes to TOPIC/alarm
-    std::string user, password;   ///< empty: none
-    std::string authority;        ///< file of the certificate authority; empty: without TLS
+    std::string topic = "talus";                    ///< listens to TOPIC/trigger, publishes to TOPIC/alarm
+    std::string user, password;                     ///< empty: none
+    std::string authority;                          ///< file of the certificate authority; empty: without TLS
+    std::chrono::milliseconds answer_limit{10000};  ///< for a broker to accept the connection
 
     /// "broker.example.org:8883"
     [[nodiscard]] std::string shown() const { return host + ":" + std::to_string(port); }

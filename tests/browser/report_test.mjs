@@ -5,6 +5,7 @@ import { existsSync, mkdirSync, readFileSync } from "node:fs";
 import { join, resolve } from "node:path";
 import { inflateSync } from "node:zlib";
 import { pathToFileURL } from "node:url";
+import { within } from "./twin/harness.mjs";
 
 const [, , reportFile, outputFolder] = process.argv;
 const browserPath = process.env.TALUS_BROWSER ?? "/usr/bin/chromium";
@@ -31,7 +32,7 @@ let failed = 0;
 let passed = 0;
 async function check(name, body) {
   try {
-    await body();
+    await within((async () => body())(), "the end of this check");
     ++passed;
     console.log(`ok      ${name}`);
   } catch (error) {

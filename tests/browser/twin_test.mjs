@@ -1,10 +1,10 @@
 // The page of the live twin in Chromium, with real clicks and keys.
 // Usage: node twin_test.mjs OUTPUT_FOLDER TALUS serve SCENE. TALUS_PARTS=PART,... runs those parts alone, TALUS_ONLY=PATTERN the checks
-// whose name matches. No check is a clock: what is waited for is a state of the server or the page, and a run that has to go on while
+// whose name matches, TALUS_WAIT_S=SECONDS waits less than five minutes for what does not come. No check is a clock: what is waited for is a state of the server or the page, and a run that has to go on while
 // the page is looked at goes slowly.
 // Exit code 77: skipped, the browser or its driver is missing.
 import { resolve } from "node:path";
-import { existsSync, Run } from "./twin/harness.mjs";
+import { existsSync, Run, waitedFor, within } from "./twin/harness.mjs";
 import { testBackanalysis } from "./twin/backanalysis.mjs";
 import { testBarrier } from "./twin/barrier.mjs";
 import { testDepthAveraged } from "./twin/depth_averaged.mjs";
@@ -38,6 +38,11 @@ try {
 const browser = await chromium.launch({ executablePath: browserPath, args: ["--headless", "--no-sandbox", "--use-angle=swiftshader",
   "--enable-unsafe-swiftshader", "--ignore-gpu-blocklist", "--webgl-msaa-sample-count=0", "--disable-background-networking",
   "--disable-component-update", "--no-first-run"] });
+// Before the limit of ctest, which would not say where it stood.
+setTimeout(() => {
+  console.log(`FAILED  not over after 1100 s; last waited for: ${waitedFor()}`);
+  process.exit(1);
+}, 1_100_000).unref();
 const run = new Run(browser, resolve(output), command, process.env.TALUS_ONLY);
 const parts = { controls: testControls, readings: testReadings, scenarios: testScenarios, barrier: testBarrier, parts: testParts, erosion: testErosion, ground: testGround, look: testLook, photo: testPhoto,
   backanalysis: testBackanalysis, depth_averaged: testDepthAveraged, sharing: testSharing, start: testStart, triggers: testTriggers };
@@ -53,7 +58,7 @@ try {
     if (run.problems.length > 0) throw new Error([...new Set(run.problems)].join("\n"));
   });
 } finally {
-  await browser.close();
+  await within(browser.close(), "the end of the browser", 60_000).catch((error) => console.log(error.message));
   await run.stopServers();
 }
 console.log(`${run.passed} passed, ${run.failed} failed`);

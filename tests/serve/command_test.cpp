@@ -189,5 +189,37 @@ TEST(ServeCommand, refuses_triggers_and_alarms_that_cannot_be_used_without_repea
     EXPECT_THAT(said({"--mqtt", "host", "--mqtt-login-file", "token.txt"}), HasSubstr("password on its"));
 }
 
+TEST(ServeCommand, the_start_page_has_the_same_options_of_triggers_and_alarms) {
+    const SmallScene scene;
+    scene.write(SmallScene::text() +
+                "[[trigger]]\nname = \"slope\"\n[[alarm]]\nname = \"a\"\nchainage_m = 5\ndistance_m = 1\n");
+    write_text(scene.input("token.txt"), "trigger-token-of-the-tests\n");
+    ProgramOptions options;
+    options.folder = scene.folder();
+    options.environment = {"TMPDIR=" + scene.folder().string()};
+    options.wait_for = "\n";
+    const std::uint16_t port = free_port();
+    Answer started;
+    options.while_running = [&](int process) {
+        HttpClient client(port, "trigger-token-of-the-tests");
+        // Refused with 409 until the scene is open.
+        for (int i = 0; i < 400 && started.status != 200; ++i) {
+            started = client.post("/api/trigger", {{"trigger", "slope"}});
+            usleep(25'000);
+        }
+        kill(process, SIGINT);
+    };
+    const auto outcome =
+        run_program({"start", "slope.toml", "--no-browser", "--json", "--folder", "data", "--port",
+                     std::to_string(port), "--trigger-token-file", "token.txt"},
+                    options);
+    EXPECT_EQ(started.status, 200) << started.body;
+    EXPECT_EQ(outcome.exit_code, 0) << outcome.error;
+    EXPECT_THAT(outcome.error, HasSubstr("started by trigger \"slope\""));
+    const auto wrong = run_program({"start", "--no-browser", "--webhook-file", "nothing.txt"}, {.folder = scene.folder()});
+    EXPECT_EQ(wrong.exit_code, 2);
+    EXPECT_THAT(wrong.error, HasSubstr("--webhook-file nothing.txt: no such file"));
+}
+
 }  // namespace
 }  // namespace talus::test

@@ -3,14 +3,12 @@
 #include <netdb.h>
 #include <netinet/in.h>
 #include <openssl/err.h>
-#include <openssl/evp.h>
-#include <openssl/pem.h>
 #include <openssl/ssl.h>
-#include <openssl/x509.h>
 
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 
+#include "serve/certificate.hpp"
 #include "serve/serve_fixture.hpp"
 
 namespace talus::test {
@@ -18,35 +16,6 @@ namespace {
 
 using nlohmann::json;
 using ::testing::HasSubstr;
-
-std::string text_of(BIO* bio) {
-    char* data = nullptr;
-    const long size = BIO_get_mem_data(bio, &data);
-    std::string text(data, static_cast<std::size_t>(size));
-    BIO_free(bio);
-    return text;
-}
-
-struct Pair {
-    std::string certificate, key;
-};
-
-/// A certificate that signs itself.
-Pair self_signed() {
-    EVP_PKEY* key = EVP_EC_gen("P-256");
-    X509* certificate = X509_new();
-    ASN1_INTEGER_set(X509_get_serialNumber(certificate), 1);
-    X509_gmtime_adj(X509_getm_notBefore(certificate), 0);
-    X509_gmtime_adj(X509_getm_notAfter(certificate), 3600);
-    X509_set_pubkey(certificate, key);
-    X509_sign(certificate, key, EVP_sha256());
-    BIO *pem = BIO_new(BIO_s_mem()), *secret = BIO_new(BIO_s_mem());
-    PEM_write_bio_X509(pem, certificate);
-    PEM_write_bio_PrivateKey(secret, key, nullptr, nullptr, 0, nullptr, nullptr);
-    X509_free(certificate);
-    EVP_PKEY_free(key);
-    return {text_of(pem), text_of(secret)};
-}
 
 /// What a server answers to a request over TLS; empty: no connection.
 std::string over_tls(const std::string& host, const std::string& request) {

@@ -20,6 +20,7 @@ class StartPage : public ::testing::Test {
   protected:
     static constexpr const char* controller = "controller-token-of-tests";
     static constexpr const char* viewer = "viewer-token-of-the-tests";
+    static constexpr const char* trigger = "trigger-token-of-the-tests";
 
     void SetUp() override {
         ASSERT_TRUE(serve::Library(folder()).remember(scene_.scene_file(), "Plane"));
@@ -30,7 +31,8 @@ class StartPage : public ::testing::Test {
         std::filesystem::create_directories(scene_.folder() / "exports");
         serve::ServerOptions options;
         options.port = 0;
-        options.tokens = {controller, viewer};
+        options.tokens = {controller, viewer, alerts_.http ? trigger : ""};
+        options.alerts = alerts_;
         options.export_folder = scene_.folder() / "exports";
         auto server = serve::Server::listen(std::move(options));
         ASSERT_TRUE(server) << server.error().message;
@@ -60,6 +62,7 @@ class StartPage : public ::testing::Test {
     SmallScene scene_;
     bool quit_ = false;
     serve::UploadLimits limits_;
+    serve::AlertSettings alerts_;  ///< triggers and alarms
     std::filesystem::path program_;  ///< for jobs
     std::unique_ptr<serve::Server> server_;
 };

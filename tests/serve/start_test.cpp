@@ -37,6 +37,25 @@ TEST_F(StartPage, viewers_see_no_files_and_change_nothing) {
     EXPECT_FALSE(quit_);
 }
 
+TEST_F(StartPage, triggers_work_on_every_scene_that_has_them) {
+    alerts_.http = true;
+    start();
+    const auto told = [&] { return HttpClient(server_->port(), trigger).post("/api/trigger", {{"trigger", "slope"}}); };
+    EXPECT_EQ(told().status, 409) << "no scene is open";
+    open({{"scene", id()}});
+    EXPECT_THAT(told().body, HasSubstr("the scene has no [[trigger]]"));
+    EXPECT_EQ(hand().get("/api/alerts").json()["listening"]["http"], false);
+    // No place is kept free for runs of triggers.
+    for (int i = 0; i < 5; ++i) EXPECT_EQ(hand().post("/api/scenarios", {{"copy_of", "A"}}).status, 200);
+
+    std::ofstream(scene_.scene_file(), std::ios::app) << "\n[[trigger]]\nname = \"slope\"\n";
+    open({{"scene", id()}, {"replace", true}});
+    const Answer started = told();
+    EXPECT_EQ(started.status, 200) << started.body;
+    EXPECT_EQ(started.json()["scenario"], "B");
+    EXPECT_EQ(hand().get("/api/alerts").json()["runs"][0]["trigger"], "slope");
+}
+
 TEST_F(StartPage, opens_no_path_of_a_request) {
     for (const std::string& name :
          {std::string(scene_.scene_file()), std::string("../slope.toml"), std::string("slope")}) {

@@ -128,8 +128,13 @@ function buildPage(page: HTMLElement, twin: Twin): void {
   stage.covers = [bar.camera, bar.show, scale];
   // Legends stand below the picture: over it they would hide debris and houses.
   const middle = h("main", { class: "middle" }, triggerBanner(twin), h("div", { class: "view" }, stage.element, bar.camera, bar.show, scale), key);
-  // Names of the two views stand below the bars, which wrap on a narrow page.
-  new ResizeObserver(() => middle.style.setProperty("--bars", `${bar.show.offsetTop + bar.show.offsetHeight}px`)).observe(bar.show);
+  // Names of the two views stand below the bars, which wrap on a narrow page, and so does the ground in a plan. On a phone only the camera's is there.
+  const bars = new ResizeObserver(() => {
+    const below = bar.show.offsetHeight > 0 ? bar.show.offsetTop + bar.show.offsetHeight : bar.camera.offsetTop + bar.camera.offsetHeight;
+    middle.style.setProperty("--bars", `${bar.show.offsetTop + bar.show.offsetHeight}px`);
+    stage.rig.covered = Math.min(0.4, below / Math.max(1, stage.element.clientHeight));
+  });
+  for (const element of [bar.show, stage.element]) bars.observe(element);
   page.replaceChildren(
     h("header", { class: "topbar" }, setup, wordmark, h("h1", {}, twin.scene.title), badge, h("span", { class: "spring" }),
       people(twin), sessionButton(twin), ...exportButtons(twin, stage, picture), button("Help", { icon: "help", bare: true, class: "bare help", title: "Help and shortcuts (?)", onclick: help }), drawer),

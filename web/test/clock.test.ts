@@ -37,4 +37,15 @@ describe("frame clock", () => {
     expect(clock.push(frame(9.1, 2), 150)).toBe(false);
     expect(clock.fraction(150)).toBe(1);
   });
+  it("says which frames are displayed no more, each once", () => {
+    const gone: number[] = [];
+    const clock = new FrameClock((frame) => gone.push(frame.time_s));
+    for (const time of [1, 1.1, 1.2]) clock.push(frame(time), 0);
+    expect(gone).toEqual([1]);
+    clock.push(frame(5), 0); // far away: it is shown alone
+    expect(gone).toEqual([1, 1.1, 1.2]);
+    clock.push(frame(5.1), 0);
+    expect([clock.previous?.time_s, clock.next?.time_s]).toEqual([5, 5.1]);
+    expect(gone).toEqual([1, 1.1, 1.2]);
+  });
 });

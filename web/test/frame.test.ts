@@ -2,7 +2,7 @@
 import { readFileSync } from "node:fs";
 import { deflateSync } from "node:zlib";
 import { describe, expect, it } from "vitest";
-import { absent, decodeFrame, MalformedMessage } from "../src/protocol/frame";
+import { absent, decodeFrame, MalformedMessage, recycle } from "../src/protocol/frame";
 import { decodeGrid, gridAt } from "../src/protocol/grid";
 
 // A Buffer of Node may be a part of a larger pool: the copy is not.
@@ -49,6 +49,24 @@ describe("frame", () => {
     expect([depth.length, mapSpeed.length]).toEqual([window.columns * window.rows, window.columns * window.rows]);
     const volume = depth.reduce((sum, v) => sum + v * depthUnit_m, 0) * moment.map.cell_m ** 2;
     expect(volume / (moment.particles * moment.particle_spacing_m ** 3)).toBeCloseTo(1, 2);
+  });
+  it("lies in what a frame that was given back has left, and in nothing that is in use", async () => {
+    const whole = await decodeFrame(recorded("frame.bin").buffer);
+    const [first, second] = [await decodeFrame(recorded("frame.bin").buffer, true), await decodeFrame(recorded("frame.bin").buffer, true)];
+    expect(second.particles.buffer).not.toBe(first.particles.buffer);
+    const left = [first.particles.buffer, first.depth.buffer, first.mapSpeed.buffer];
+    recycle(first);
+    recycle(first);
+    recycle(whole);
+    const [third, fourth] = [await decodeFrame(recorded("frame.bin").buffer, true), await decodeFrame(recorded("frame.bin").buffer, true)];
+    expect([third.particles.buffer, third.depth.buffer, third.mapSpeed.buffer]).toEqual(left);
+    expect(third.particles.buffer).toBe(left[0]);
+    expect(fourth.particles.buffer).not.toBe(left[0]);
+    for (const frame of [second, third, fourth]) {
+      const { room, ...rest } = frame;
+      expect(room).toBeDefined();
+      expect(rest).toEqual(whole);
+    }
   });
   it("knows scenario B, flags and large step numbers", async () => {
     const frame = await decodeFrame(frameWith((head) => {

@@ -4,7 +4,8 @@ import { assert, inControl, pause, until } from "./harness.mjs";
 
 export async function testDepthAveraged(run) {
   const server = await run.start();
-  const page = await run.open(server.controller, { name: "Eve" });
+  // What it says of the model comes after its answer to the click, as from a busy server.
+  const page = await run.open(server.controller, { name: "Eve", late: /"type":\s*"depth_averaged"/ });
   await inControl(page);
   const viewer = await run.open(server.viewer, { name: "Zoe" });
   const state = () => server.ask("scenarios/A/state");

@@ -9,39 +9,68 @@ import { createInterface } from "node:readline";
 /// Without the variables of this test, which the program does not know and refuses.
 export const programEnvironment = Object.fromEntries(Object.entries(process.env).filter(([name]) => !/^TALUS_(?!DATA$|SIMD$)/.test(name)));
 
-/** command: how the server is started; it prints one line of JSON with controller_url and viewer_url. */
+/** What has not come after so long does not come: nothing is measured by it, and only a failing test waits for it. */
+export const limit_ms = 1000 * Number(process.env.TALUS_WAIT_S ?? 300);
+/** A check as a whole, with all its waits. */
+const longest_check_ms = 600_000;
+/** What is or was waited for last. */
+let lastWait = "nothing";
+export const waitedFor = () => lastWait;
+
+/** What a promise gives; an error that says what was waited for if that does not come. */
+export async function within(promise, what, most_ms = limit_ms) {
+  lastWait = what;
+  let timer;
+  const late = new Promise((_, reject) => {
+    timer = setTimeout(() => reject(new Error(`${what}: not within ${most_ms / 1000} s; last waited for: ${lastWait}`)), most_ms);
+  });
+  try {
+    return await Promise.race([promise, late]);
+  } finally {
+    clearTimeout(timer);
+  }
+}
+/** Waits for a condition in the page, also over the loading of another. */
+export async function shows(page, condition, what) {
+  lastWait = what;
+  await page.waitForFunction(condition).catch((error) => {
+    throw new Error(`${what}: ${error.message}`);
+  });
+}
+/** What a server says; past the page. */
+async function asked(url, token) {
+  const answer = await within(fetch(url, { headers: { Authorization: `Bearer ${token}` } }).then(async (response) => ({ status: response.status, text: await response.text() })), url);
+  assert.equal(answer.status, 200, `${url}: ${answer.text}`);
+  return answer.text;
+}
+
+/** Starts a program that prints one line of JSON with controller_url and viewer_url. */
 export async function startServer(command) {
   const process_ = spawn(command[0], command.slice(1), { env: programEnvironment, stdio: ["ignore", "pipe", "pipe"] });
   let told = "";
   process_.stderr.on("data", (data) => (told += data));
-  const links = await new Promise((resolve, reject) => {
+  const ended = new Promise((resolve) => process_.once("exit", resolve));
+  const links = await within(new Promise((resolve, reject) => {
     createInterface({ input: process_.stdout }).on("line", (line) => line.startsWith("{") && resolve(JSON.parse(line)));
-    process_.on("exit", (code) => reject(new Error(`the server ended with ${code}: ${told}`)));
-    setTimeout(() => reject(new Error(`the server printed no links: ${told}`)), limit_ms).unref();
-  });
+    void ended.then((code) => reject(new Error(`the server ended with ${code}: ${told}`)));
+  }), `the links of ${command.join(" ")}`);
   const token = new URL(links.controller_url).hash.slice(7);
   const viewerToken = new URL(links.viewer_url).hash.slice(7);
   const base = links.controller_url.split("#")[0];
   return {
     controller: links.controller_url, viewer: links.viewer_url, token, viewerToken, base, port: Number(new URL(base).port),
-    /** What the server says, past the page. */
-    async ask(path) {
-      const response = await fetch(`${base}api/${path}`, { headers: { Authorization: `Bearer ${token}` } });
-      assert.equal(response.status, 200, path);
-      return response.json();
-    },
+    /** Its exit code, once it ends by itself. */
+    end: () => within(ended, "the end of the program"),
+    text: (path) => asked(`${base}api/${path}`, token),
+    ask: async (path) => JSON.parse(await asked(`${base}api/${path}`, token)),
     async stop() {
       if (process_.exitCode !== null) return;
-      const ended = new Promise((resolve) => process_.once("exit", resolve));
       process_.kill("SIGTERM");
       setTimeout(() => process_.kill("SIGKILL"), 5000).unref();
       await ended;
     },
   };
 }
-
-/** What has not come after so long does not come: nothing is measured by it, and only a failing test waits for it. */
-const limit_ms = 300_000;
 
 export class Run {
   passed = 0;
@@ -73,18 +102,18 @@ export class Run {
     if (this.only && !new RegExp(this.only).test(name)) return;
     const begun = Date.now();
     try {
-      await body();
+      await within(body(), "the end of this check", longest_check_ms);
       ++this.passed;
       console.log(`ok      ${name} (${((Date.now() - begun) / 1000).toFixed(1)} s)`);
     } catch (error) {
       ++this.failed;
       console.log(`FAILED  ${name}\n        ${String(error.message).split("\n").slice(0, 14).join("\n        ")}`);
-      await this.last?.screenshot({ path: join(this.output, `failed-${this.failed}.png`) }).catch(() => {});
+      await this.last?.screenshot({ path: join(this.output, `failed-${this.failed}.png`), timeout: 30_000 }).catch(() => {});
     }
   }
-  /** finest: with the whole mesh of the ground; a coarser one is drawn in a fraction of the time. look: natural ones take far longer to draw without a graphics card. edits: how runs that have begun are edited; null: not chosen yet. touch: as on a phone. */
-  async open(link, { width = 1280, height = 720, reduced = true, name, finest = false, edits = "now", look = "scientific", touch = false } = {}) {
-    const context = await this.browser.newContext({ viewport: { width, height }, reducedMotion: reduced ? "reduce" : "no-preference", acceptDownloads: true, hasTouch: touch, isMobile: touch });
+  /** finest: with the whole mesh of the ground; a coarser one is drawn in a fraction of the time. look: natural ones take far longer to draw without a graphics card. edits: how runs that have begun are edited; null: not chosen yet. touch: as on a phone. late: which texts of the server come late, as from a busy one. scale: pixels of the screen per pixel of the page. prepare: called with the page before it loads. */
+  async open(link, { width = 1280, height = 720, reduced = true, name, finest = false, edits = "now", look = "scientific", touch = false, late, scale = 1, prepare } = {}) {
+    const context = await this.browser.newContext({ viewport: { width, height }, deviceScaleFactor: scale, reducedMotion: reduced ? "reduce" : "no-preference", acceptDownloads: true, hasTouch: touch, isMobile: touch });
     const page = await context.newPage();
     if (name) await page.addInitScript((n) => localStorage.setItem("talus-name", n), name);
     await page.addInitScript((l) => localStorage.getItem("talus-look") ?? localStorage.setItem("talus-look", l), look);
@@ -100,17 +129,24 @@ export class Run {
     });
     page.setDefaultTimeout(limit_ms);
     if (!finest) await page.route(/\/api\/terrain/, (route) => route.continue({ url: route.request().url().replace(/max_cells=\d+/, "max_cells=20000") }));
+    if (late) {
+      await page.routeWebSocket(/\/ws/, (toPage) => {
+        const toServer = toPage.connectToServer();
+        toServer.onMessage((message) => (typeof message === "string" && late.test(message) ? setTimeout(() => toPage.send(message), 1000) : toPage.send(message)));
+      });
+    }
+    await prepare?.(page);
     const begun = Date.now();
     await page.goto(link);
-    await page.waitForFunction(() => window.talusStats?.frames > 0 && document.querySelector(".transport"));
+    await shows(page, () => window.talusStats?.frames > 0 && document.querySelector(".transport"), "the first picture");
     page.firstPicture_ms = Date.now() - begun;
-    await page.waitForFunction(() => !document.querySelector(".connection:not([hidden])"));
+    await shows(page, () => !document.querySelector(".connection:not([hidden])"), "the connection");
     this.last = page;
     return page;
   }
   /** Colours in a part of the page, read from pixels on the screen: how many, shares of the commonest, of clear red and of clear blue. */
   async colours(page, clip) {
-    await page.evaluate(drawn);
+    await within(page.evaluate(drawn), "two pictures");
     const png = await page.screenshot(clip ? { clip } : {});
     const found = await page.evaluate(readPixels, png.toString("base64"));
     return { ...found, png, hash: createHash("sha1").update(png).digest("hex") };
@@ -201,9 +237,8 @@ export async function clickGround(page, u, v, options = {}) {
 /** Waits until a question has the wanted answer; says the last answer if it never has. */
 export async function until(question, wanted, what) {
   const begun = Date.now();
-  let answer;
   for (;;) {
-    answer = await question();
+    const answer = await within(question(), what);
     if (wanted(answer)) return answer;
     if (Date.now() - begun > limit_ms) throw new Error(`${what}: still ${JSON.stringify(answer)?.slice(0, 600)}`);
     await new Promise((resolve) => setTimeout(resolve, 100));
@@ -232,7 +267,7 @@ export async function pause(page, state) {
 export const shownTime = async (page) => Number((await page.textContent(".clock")).replace("−", "-").split(" ")[0]);
 export async function saved(page, click) {
   const [download] = await Promise.all([page.waitForEvent("download"), click()]);
-  return { name: download.suggestedFilename(), bytes: readFileSync(await download.path()) };
+  return { name: download.suggestedFilename(), bytes: readFileSync(await within(download.path(), "the downloaded file")) };
 }
 /** The members of a ZIP that stores them as they are, by name. */
 export function unzipped(bytes) {

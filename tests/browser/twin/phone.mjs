@@ -106,6 +106,32 @@ export async function testPhone(run, server) {
     await tap(page, ".setup-switch", async () => !(await setup.isVisible()));
   });
 
+  await run.check("held sideways: picture, timeline and key figures at once, charts beside them; nothing is wider than the screen", async () => {
+    await page.setViewportSize({ width: 844, height: 390 });
+    const within = async (target) => {
+      const box = await boxOf(page.locator(target).first());
+      assert.ok(box.x >= 0 && box.y >= 0 && box.x + box.width <= 845 && box.y + box.height <= 391, `${target} at ${JSON.stringify(box)}`);
+      return box;
+    };
+    const picture = await until(() => page.locator(".stage canvas").boundingBox(), (box) => box.width > 480 && box.width < 700, "the picture beside the figures");
+    assert.ok(picture.height > 230, `${picture.height} px of picture`);
+    const [timeline, figures] = [await within(".timeline"), await within(".run-card dl")];
+    assert.ok(timeline.width > 250 && timeline.y > picture.y + picture.height - 1, `timeline at ${JSON.stringify(timeline)}`);
+    assert.ok(figures.x > picture.x + picture.width - 1, `key figures at ${JSON.stringify(figures)}`);
+    assert.deepEqual(await tooWide(page), []);
+    await run.shot(page, "53-sideways");
+    await tap(page, "[data-tab=front]", async () => (await page.locator(".tab-panel:visible .chart").count()) > 0);
+    await page.locator(".tab-panel:visible .chart").first().scrollIntoViewIfNeeded();
+    await run.shot(page, "54-sideways-chart");
+    await page.locator(".run-card").scrollIntoViewIfNeeded();
+    const setup = page.locator(".controls .scenarios");
+    await tap(page, ".setup-switch", () => setup.isVisible());
+    assert.deepEqual(await tooWide(page), []);
+    await tap(page, ".setup-switch", async () => !(await setup.isVisible()));
+    await page.setViewportSize({ width: 390, height: 844 });
+    await until(() => page.locator(".stage canvas").boundingBox(), (box) => box.width < 400, "upright again");
+  });
+
   await run.check("light and dark follow the system, and every text can be read in both", async () => {
     await tap(page, ".sheet-handle", expanded(page, ".sheet-handle", true));
     for (const colorScheme of ["light", "dark"]) {

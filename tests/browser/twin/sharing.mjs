@@ -1,6 +1,6 @@
 // Several people in one session, breaks of the connection, sizes of the window, keyboard and names of controls.
 import { testPhone } from "./phone.mjs";
-import { assert, shownTime, until, viewClip } from "./harness.mjs";
+import { assert, shownTime, shows, until, viewClip } from "./harness.mjs";
 import jsQR from "jsqr";
 
 /** The colours of a PNG file, decoded by the browser. */
@@ -102,7 +102,7 @@ export async function testSharing(run) {
     const context = await run.browser.newContext();
     const eve = await context.newPage();
     await eve.goto(url);
-    await eve.waitForFunction(() => document.querySelector(".transport"));
+    await shows(eve, () => document.querySelector(".transport"), "the page of another computer");
     await context.close();
     await ada.click("text=Stop sharing");
     await ada.locator("text=Off: only this computer").waitFor();

@@ -1,21 +1,8 @@
 // The start page: choose a scene, save the session, open it again, go back, end the program.
-import { spawn } from "node:child_process";
 import { existsSync, mkdtempSync, rmSync } from "node:fs";
 import { tmpdir } from "node:os";
 import { join } from "node:path";
-import { createInterface } from "node:readline";
-import { assert, programEnvironment, until } from "./harness.mjs";
-
-/** `talus start`: prints its links as one line of JSON. */
-async function startTalus(program, folder) {
-  const process_ = spawn(program, ["start", "--no-browser", "--json", "--folder", folder], { env: programEnvironment, stdio: ["ignore", "pipe", "inherit"] });
-  const ended = new Promise((resolve) => process_.once("exit", resolve));
-  const links = await new Promise((resolve) => createInterface({ input: process_.stdout }).on("line", (line) => resolve(JSON.parse(line))));
-  return { port: links.port, link: links.controller_url, viewer: links.viewer_url, ended, async stop() {
-    process_.kill("SIGTERM");
-    await ended;
-  } };
-}
+import { assert, limit_ms, shows, startServer, until } from "./harness.mjs";
 
 /** An elevation model as an ASCII grid, which states no reference system: a slope of 60 x 50 cells of 5 m that falls to the west. */
 function asciiGrid() {
@@ -36,26 +23,25 @@ async function drop(page, selector, name, content) {
 
 export async function testStart(run) {
   const folder = mkdtempSync(join(tmpdir(), "talus-start-"));
-  const server = await startTalus(run.command[0], folder);
+  const server = await startServer([run.command[0], "start", "--no-browser", "--json", "--folder", folder]);
   run.servers.push(server);
   const context = await run.browser.newContext({ viewport: { width: 1440, height: 900 } });
   const page = await context.newPage();
-  page.setDefaultTimeout(300_000);
+  context.setDefaultTimeout(limit_ms);
   run.last = page;
   page.on("pageerror", (error) => run.problems.push(error.stack ?? String(error)));
   page.on("request", (request) => /^(data|blob):/.test(request.url()) || run.requests.push(request.url()));
-  const token = new URL(server.link).hash.slice(7);
-  const ask = async (path) => (await fetch(`http://127.0.0.1:${server.port}/api/${path}`, { headers: { Authorization: `Bearer ${token}` } })).json();
+  const { ask } = server;
 
   await run.check("the start page lists the built-in scene and opens it with the keyboard", async () => {
-    await page.goto(server.link);
+    await page.goto(server.controller);
     const row = page.locator("[data-scene=sham_tseng]");
     await row.waitFor();
     assert.match(await row.textContent(), /Sham Tseng/);
     assert.match(await page.textContent(".empty"), /session is saved/);
     await row.focus();
     await page.keyboard.press("Enter");
-    await page.waitForFunction(() => window.talusStats?.frames > 0 && document.querySelector(".transport"));
+    await shows(page, () => window.talusStats?.frames > 0 && document.querySelector(".transport"), "the first picture");
     assert.match(await page.textContent(".topbar h1"), /Sham Tseng/);
   });
 
@@ -74,7 +60,7 @@ export async function testStart(run) {
     await page.screenshot({ path: join(run.output, "start-1440.png") });
     await saved.click();
     await page.click("dialog .primary");
-    await page.waitForFunction(() => location.hash === "" && document.querySelector(".transport"));
+    await shows(page, () => location.hash === "" && document.querySelector(".transport"), "the saved session");
     assert.equal((await ask("start")).count, 2);
     const state = await ask("scenarios/A/state");
     assert.deepEqual([state.step, state.hash], [3, hash]);
@@ -104,7 +90,7 @@ export async function testStart(run) {
     await page.screenshot({ path: join(run.output, "new-scene.png"), fullPage: true });
     await page.click("text=Create and open");
     await page.click("dialog .primary");
-    await page.waitForFunction(() => document.querySelector(".topbar h1")?.textContent.includes("west slope") && document.querySelector(".transport"));
+    await shows(page, () => document.querySelector(".topbar h1")?.textContent.includes("west slope") && document.querySelector(".transport"), "the new scene");
     await page.click("[aria-label='Step']");
     await until(() => ask("scenarios/A/state"), (s) => s.step === 1, "a step of the new scene");
     assert.ok(existsSync(join(folder, "scenes", "west-slope", "scene.toml")));
@@ -142,11 +128,11 @@ export async function testStart(run) {
     await page.screenshot({ path: join(run.output, "jobs-1440.png"), fullPage: true });
     await job.getByText("Show on the scene").click();
     await page.click("dialog .primary");
-    await page.waitForFunction(() => location.hash === "" && document.querySelector(".transport"));
+    await shows(page, () => location.hash === "" && document.querySelector(".transport"), "the scene of the ensemble");
     await until(() => ask("ensembles"), ({ ensembles }) => ensembles?.length === 1 && ensembles[0].runs === 3, "the ensemble is among the maps");
   });
 
-  await run.check("a calibration and a validation are started, one waits for the other, both are cancelled, and one is deleted", async () => {
+  await run.check("a calibration and a validation are started, one waits for the other, one is cancelled, continued and cancelled again, and the other is deleted", async () => {
     await page.goto(`http://127.0.0.1:${server.port}/#start`);
     await page.locator(".start-list").first().waitFor();
     await page.click("text=New job");
@@ -170,6 +156,10 @@ export async function testStart(run) {
     await page.locator("[data-job=calibration-1][data-state=cancelled]").waitFor();
     await page.locator("[data-job=validation-1][data-state=done]").waitFor();
     assert.match(await waiting.textContent(), /values pass, 0 fail/);
+    await page.click("[data-job=calibration-1] >> text=Continue");
+    await page.locator("[data-job=calibration-1][data-state=running]").waitFor();
+    await page.click("[data-job=calibration-1] >> text=Cancel");
+    await page.locator("[data-job=calibration-1][data-state=cancelled]").waitFor();
     await waiting.locator("[aria-label^=Delete]").click();
     await page.click("dialog .primary");
     await until(() => waiting.count(), (n) => n === 0, "the validation is gone");
@@ -180,7 +170,7 @@ export async function testStart(run) {
   await run.check("on a phone nothing is wider than the screen, a viewer sees no files, and talus is ended on the page", async () => {
     const eye = await context.newPage();
     await eye.goto(`${server.viewer.replace("#", "?watch#")}`);
-    await eye.waitForFunction(() => document.querySelector(".transport"));
+    await shows(eye, () => document.querySelector(".transport"), "the viewer's page");
     assert.equal(await eye.locator(".wordmark").evaluate((e) => e.tagName), "SPAN");
     await eye.close();
     await page.setViewportSize({ width: 390, height: 844 });
@@ -191,7 +181,7 @@ export async function testStart(run) {
     await page.click("text=End talus");
     await page.click("dialog .primary");
     await page.locator("text=talus has ended").waitFor();
-    assert.equal(await server.ended, 0);
+    assert.equal(await server.end(), 0);
   });
   await context.close();
   rmSync(folder, { recursive: true, force: true });

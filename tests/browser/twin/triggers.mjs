@@ -3,7 +3,7 @@ import { createServer } from "node:http";
 import { appendFileSync, mkdirSync, writeFileSync } from "node:fs";
 import { join } from "node:path";
 import { writeGully } from "./gully.mjs";
-import { assert, inControl, until } from "./harness.mjs";
+import { assert, boxOf, inControl, shownTime, until } from "./harness.mjs";
 
 const more = `
 [[inflow]]
@@ -78,6 +78,19 @@ export async function testTriggers(run) {
     assert.equal(posts[0].trigger, "Stream gauge");
     assert.match(posts[0].hash, /^[0-9a-f]{16}$/);
     await run.shot(ada, "61-alarm");
+    const mark = ada.locator(".alarm-mark");
+    assert.equal(await mark.count(), 1);
+    const [raised] = (await server.ask("alerts")).alarms;
+    assert.equal(await mark.getAttribute("aria-label"), `Alarm Front on its way, ${raised.time_s.toFixed(1)} s`);
+    assert.match(await mark.getAttribute("title"), /chainage 60 m/);
+    const [line, at] = [await boxOf(ada.locator(".timeline")), await boxOf(mark)];
+    const { end_time_s } = await server.ask("scenarios/B/state");
+    const expected = line.x + 7 + (raised.time_s / end_time_s) * (line.width - 14);
+    assert.ok(Math.abs(at.x + at.width / 2 - expected) < 1.5, `the mark is at ${at.x + at.width / 2}, ${expected} was expected`);
+    await mark.click();
+    await until(() => shownTime(ada), (t) => Math.abs(t - raised.time_s) < 0.06, "the recording at the time of the alarm");
+    assert.equal(await eve.locator(".alarm-mark").count(), 1);
+    await ada.click("button.live");
     await ada.locator(".trigger-banner [title=Close], .trigger-banner [aria-label=Close]").first().click();
     await until(() => ada.locator(".trigger-banner").isVisible(), (v) => !v, "the banner closed");
     assert.equal(await eve.locator(".trigger-banner").isVisible(), true, "for Ada alone");

@@ -12,23 +12,30 @@ const anyOn = (twin: Twin): boolean => twin.every("depthAveraged").some((cell) =
 /** Switches the model for everybody: a tick box for the person in control, that also shows its map of what is shown of the particles. */
 export function depthAveragedSwitch(twin: Twin): HTMLElement {
   let former: ShownLayer | "none" = "none";
+  // The server answers first and tells everybody later, after its present step: only then is there a map to show.
+  let awaited = false;
   const box = h("input", { type: "checkbox", onchange: () => {
-    const on = box.checked;
-    void twin.attempt(async () => {
-      await twin.api.turnDepthAveraged(on);
-      if (!on) return;
-      former = twin.layer.value;
-      const shown = former === "none" || isEnsembleLayer(former) || isDepthAveragedLayer(former) ? "peak_depth" : former;
-      twin.layer.value = depthAveragedLayer(shown) ?? "depth_averaged/peak_depth";
-    }).then((fine) => {
-      if (!fine) box.checked = anyOn(twin);
+    const on = (awaited = box.checked);
+    void twin.attempt(() => twin.api.turnDepthAveraged(on)).then((fine) => {
+      if (fine) return;
+      awaited = false;
+      box.checked = anyOn(twin);
     });
   } });
+  const showMap = (): void => {
+    former = twin.layer.value;
+    const shown = former === "none" || isEnsembleLayer(former) || isDepthAveragedLayer(former) ? "peak_depth" : former;
+    twin.layer.value = depthAveragedLayer(shown) ?? "depth_averaged/peak_depth";
+  };
   const state = h("span", { class: "muted" });
   const label = h("label", { class: "check depth-averaged-switch" }, box, "Depth-averaged model", state);
   watchAll([twin.you, twin.controller, twin.connection, twin.shown, twin.layer, ...twin.every("depthAveraged")], () => {
     const on = anyOn(twin);
-    box.checked = on;
+    box.checked = on || awaited;
+    if (on && awaited) {
+      awaited = false;
+      showMap();
+    }
     box.disabled = twin.hindrance !== null;
     label.title = twin.hindrance ?? "A second model of the same setup, from time 0, computed again after every change: its maps, its front, and its figures beside those of the particles";
     const going = twin.shown.value.map((s) => twin.cells[s].depthAveraged.value).find((s) => s?.state === "running" || s?.state === "waiting");

@@ -27,6 +27,7 @@ export function transport(twin: Twin, playback: Playback): HTMLElement {
   const status = h("span", { class: "status", role: "status" });
   const slider = h("input", { type: "range", class: "timeline", min: "0", step: "0.05", "aria-label": "Time of the recording, s",
     oninput: () => playback.seek(Number(slider.value)) });
+  const alarms = alarmMarks(twin, playback);
   const ends = h("div", { class: "timeline-ends" }, h("span", {}, "0 s"), h("span", {}));
   const play = button("Play the recording", { icon: "run", bare: true, class: "bare play", onclick: () => playback.toggle() });
   const live = button("Live", { class: "live", onclick: () => playback.live(), title: "Return to the running simulation (L)" });
@@ -79,8 +80,28 @@ export function transport(twin: Twin, playback: Playback): HTMLElement {
     h("div", { class: "drive" }, run, step, restart, speed),
     h("div", { class: "time" }, clock, status),
     play,
-    h("div", { class: "line" }, slider, ends),
+    h("div", { class: "line" }, slider, alarms, ends),
     live);
+}
+
+/** Where the alarms of the run were raised; a click shows the recording at that time. */
+function alarmMarks(twin: Twin, playback: Playback): HTMLElement {
+  const marks = h("div", { class: "timeline-alarms", role: "group", "aria-label": "Alarms on the timeline" });
+  let shown = "";
+  watchAll([twin.alerts, twin.edited, ...twin.every("state")], () => {
+    const raised = (twin.alerts.value?.alarms ?? []).filter((alarm) => alarm.scenario === twin.edited.value);
+    const end_s = twin.now.state.value?.end_time_s ?? 0;
+    const key = JSON.stringify([end_s, ...raised.map((alarm) => [alarm.alarm, alarm.time_s])]);
+    if (key === shown) return;
+    shown = key;
+    marks.replaceChildren(...(end_s > 0 ? raised : []).map((alarm) => {
+      const text = `Alarm ${alarm.alarm}, ${fixed(alarm.time_s, 1)} s`;
+      const mark = h("button", { type: "button", class: "alarm-mark", "aria-label": text, title: `${text}: ${alarm.sentence}`, onclick: () => playback.seek(alarm.time_s) });
+      mark.style.left = `${Math.min(100, (100 * alarm.time_s) / end_s)}%`;
+      return mark;
+    }));
+  });
+  return marks;
 }
 
 export async function toggle(twin: Twin): Promise<void> {

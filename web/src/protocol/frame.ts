@@ -33,7 +33,25 @@ export interface Frame {
   mapSpeed: Uint8Array;
   depthUnit_m: number;
   mapSpeedUnit_mps: number;
+  /** What it lies in, if it may be given back: see `recycle`. */
+  room?: Room;
 }
+
+/** Arrays at least as long as what lies in them. */
+interface Room { body: Uint8Array; particles: Uint16Array; depth: Uint16Array; mapSpeed: Uint8Array }
+
+/** Of frames that nobody looks at any more. A megabyte for each message would keep the collector of garbage busy. */
+const spare: Room[] = [];
+const mostSpare = 4;
+
+/** Gives back what a frame lies in: nobody may read it after this. */
+export function recycle(frame: Frame): void {
+  if (frame.room && spare.length < mostSpare) spare.push(frame.room);
+  delete frame.room;
+}
+/** Longer than asked for, where it must grow: the next one is hardly ever shorter. */
+const bytes = (held: Uint8Array, length: number): Uint8Array => (held.length >= length ? held : new Uint8Array(Math.ceil(1.25 * length)));
+const words = (held: Uint16Array, length: number): Uint16Array => (held.length >= length ? held : new Uint16Array(Math.ceil(1.25 * length)));
 
 /** Value of x, y and z for a particle that does not exist. */
 export const absent = 65535;
@@ -46,10 +64,10 @@ const largestBody = 512 * 1024 * 1024;
 
 export class MalformedMessage extends Error {}
 
-/** Decompresses zlib data and fails unless it contains exactly `size` bytes. */
-export async function inflate(packed: Uint8Array, size: number): Promise<Uint8Array> {
+/** Decompresses zlib data and fails unless it contains exactly `size` bytes. `into`: gives what takes them. */
+export async function inflate(packed: Uint8Array, size: number, into?: (size: number) => Uint8Array): Promise<Uint8Array> {
   if (size > largestBody) throw new MalformedMessage(`body of ${size} bytes; the limit is ${largestBody}`);
-  const out = new Uint8Array(size);
+  const out = into?.(size) ?? new Uint8Array(size);
   let filled = 0;
   const stream = new Blob([packed as BlobPart]).stream().pipeThrough(new DecompressionStream("deflate"));
   const reader = stream.getReader();
@@ -78,9 +96,10 @@ function unfold(body: Uint8Array, at: number, n: number, out: Uint16Array, first
   }
 }
 
-export async function decodeFrame(data: ArrayBuffer): Promise<Frame> {
-  const bytes = new Uint8Array(data);
-  if (data.byteLength < headBytes || tag(bytes) !== "TLSF") throw new MalformedMessage("no frame");
+/** reuse: in what frames that were given back have left. */
+export async function decodeFrame(data: ArrayBuffer, reuse = false): Promise<Frame> {
+  const message = new Uint8Array(data);
+  if (data.byteLength < headBytes || tag(message) !== "TLSF") throw new MalformedMessage("no frame");
   const head = new DataView(data);
   if (head.getUint8(4) !== 1) throw new MalformedMessage(`frame of version ${head.getUint8(4)}; this page reads version 1`);
   const slots = head.getUint32(24, true);
@@ -91,13 +110,19 @@ export async function decodeFrame(data: ArrayBuffer): Promise<Frame> {
   const m = columns * rows;
   const size = head.getUint32(84, true);
   if (size !== 7 * n + 3 * m) throw new MalformedMessage(`body of ${size} bytes for ${n} particles and ${m} cells`);
-  const body = await inflate(bytes.subarray(headBytes), size);
+  const room: Room = (reuse ? spare.pop() : undefined) ?? { body: new Uint8Array(0), particles: new Uint16Array(0), depth: new Uint16Array(0), mapSpeed: new Uint8Array(0) };
+  const body = await inflate(message.subarray(headBytes), size, () => (room.body = bytes(room.body, size)));
 
   const begun = performance.now();
-  const particles = new Uint16Array(4 * n);
+  room.particles = words(room.particles, 4 * n);
+  room.depth = words(room.depth, m);
+  room.mapSpeed = bytes(room.mapSpeed, m);
+  const particles = room.particles.subarray(0, 4 * n);
+  const depth = room.depth.subarray(0, m);
+  const mapSpeed = room.mapSpeed.subarray(0, m);
   for (let axis = 0; axis < 3; ++axis) unfold(body, 2 * n * axis, n, particles, axis, 4);
   for (let i = 0; i < n; ++i) particles[4 * i + 3] = body[6 * n + i]!;
-  const depth = new Uint16Array(m);
+  mapSpeed.set(body.subarray(7 * n + 2 * m, size));
   unfold(body, 7 * n, m, depth, 0, 1);
   lastDecode.unfold_ms = performance.now() - begun;
   const three = (at: number): [number, number, number] =>
@@ -115,8 +140,9 @@ export async function decodeFrame(data: ArrayBuffer): Promise<Frame> {
     speedUnit_mps: head.getFloat32(56, true),
     window: { column, row, columns, rows },
     depth,
-    mapSpeed: body.slice(7 * n + 2 * m),
+    mapSpeed,
     depthUnit_m: head.getFloat32(76, true),
     mapSpeedUnit_mps: head.getFloat32(80, true),
+    ...(reuse ? { room } : {}),
   };
 }

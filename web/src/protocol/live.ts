@@ -95,7 +95,7 @@ export class Live {
       this.waiting.delete(scenario);
       const begun = performance.now();
       try {
-        const frame = await decodeFrame(data);
+        const frame = await decodeFrame(data, true);
         this.decode_ms = performance.now() - begun;
         this.events.frame(frame);
       } catch (error) {

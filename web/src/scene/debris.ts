@@ -1,7 +1,7 @@
 // Debris as round shaded points. The two frames are in two vertex buffers as received; the vertex shader interpolates
 // between them, so that there is no work per particle between frames.
 import { BufferAttribute, BufferGeometry, DynamicDrawUsage, NormalBlending, Points, ShaderMaterial, Vector3, type Texture } from "three";
-import type { Frame } from "../protocol/frame";
+import { absent, type Frame } from "../protocol/frame";
 
 /** Of all shaders that draw particles: their buffers, and with `particlePlace` the place and speed between the two frames. */
 export const particleHead = /* glsl */ `
@@ -82,11 +82,14 @@ export class Debris {
     this.geometry.setAttribute(`particle${which}`, attribute);
     return attribute;
   }
-  private fill(which: 0 | 1, frame: Frame): void {
+  /** length: of the newest frame; what a frame lacks of that does not exist in it. */
+  private fill(which: 0 | 1, frame: Frame, length: number): void {
     const attribute = this.attributes[which];
-    (attribute.array as Uint16Array).set(frame.particles);
+    const values = attribute.array as Uint16Array;
+    values.set(frame.particles);
+    if (frame.particles.length < length) values.fill(absent, frame.particles.length, length);
     attribute.clearUpdateRanges();
-    attribute.addUpdateRange(0, frame.particles.length);
+    attribute.addUpdateRange(0, length);
     attribute.needsUpdate = true;
     const u = this.uniforms;
     (which === 0 ? u.uOrigin0 : u.uOrigin1).value.set(...frame.origin);
@@ -95,7 +98,8 @@ export class Debris {
   }
 
   push(frame: Frame, previous: Frame, joins: boolean): void {
-    let older = joins ? previous : frame;
+    // New particles have no earlier position; after a gap the older of the two is the same.
+    const older = joins && previous.count <= frame.count ? previous : frame;
     if (frame.count > this.attributes[0].count) {
       const room = Math.ceil(1.5 * frame.count);
       this.geometry.dispose();
@@ -104,17 +108,11 @@ export class Debris {
       this.geometry.setAttribute("position", this.attributes[1]);
     } else if (joins && older.count === frame.count) {
       this.newest = 1 - this.newest;
-      this.fill(this.newest as 0 | 1, frame);
+      this.fill(this.newest as 0 | 1, frame, frame.particles.length);
       return;
     }
-    if (older.count < frame.count) {
-      // New particles have no earlier position.
-      const padded = new Uint16Array(frame.particles.length).fill(65535);
-      padded.set(older.particles);
-      older = { ...older, particles: padded };
-    } else if (older.count > frame.count) older = frame;
-    this.fill((1 - this.newest) as 0 | 1, older);
-    this.fill(this.newest as 0 | 1, frame);
+    this.fill((1 - this.newest) as 0 | 1, older, frame.particles.length);
+    this.fill(this.newest as 0 | 1, frame, frame.particles.length);
     this.geometry.setDrawRange(0, frame.count);
   }
   mix(fraction: number): void {

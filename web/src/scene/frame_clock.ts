@@ -12,9 +12,12 @@ export class FrameClock {
   private arrived_ms = 0;
   private interval_ms = 33;
 
+  /** gone: is told which frames are displayed no more; what follows in the same task may still read them. */
+  constructor(private readonly gone: (frame: Frame) => void = () => {}) {}
+
   /** True when the two frames follow each other and may be interpolated. */
   push(frame: Frame, now_ms: number): boolean {
-    const before = this.next;
+    const { previous: oldest, next: before } = this;
     const gap = before === null ? -1 : frame.time_s - before.time_s;
     const joins = before !== null && gap > 0 && gap <= longestGap_s && frame.stride === before.stride;
     if (joins) {
@@ -24,6 +27,8 @@ export class FrameClock {
     this.previous = joins ? before : frame;
     this.next = frame;
     this.arrived_ms = now_ms;
+    if (oldest && oldest !== before && oldest !== frame) this.gone(oldest);
+    if (before && !joins && before !== frame) this.gone(before);
     return joins;
   }
   /** 0: the previous frame, 1: the next one. */

@@ -22,6 +22,8 @@ interface Shown extends Label { element: HTMLElement; width: number; height: num
 export class Labels {
   readonly layer = h("div", { class: "labels", "aria-hidden": "true" });
   private shown: Shown[] = [];
+  /** Whether they are where they belong. */
+  placed = false;
 
   constructor(public relief: Relief) {}
 
@@ -41,6 +43,7 @@ export class Labels {
 
   /** reserved: boxes (left, top, right, bottom) of the view that are covered by something else. */
   place(rig: Rig, width: number, height: number, reserved: readonly Box[]): void {
+    this.placed = true;
     const taken: Box[] = [...reserved];
     const seen = new Vector3();
     const { camera } = rig;

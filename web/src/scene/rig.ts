@@ -16,6 +16,8 @@ const flyKeys = new Set(["KeyW", "KeyA", "KeyS", "KeyD", "KeyQ", "KeyE"]);
 export class Rig {
   readonly controls: OrbitControls;
   mode: CameraMode = "orbit";
+  /** Share of the view's height, from its top, that bars cover. */
+  covered = 0;
   /** Called when the mode changes by itself, as by a saved view. */
   onMode: (mode: CameraMode) => void = () => {};
   private readonly perspective = new PerspectiveCamera(38, 1, 0.5, 20000);
@@ -134,8 +136,10 @@ export class Rig {
   }
   /** The whole ground as a plan, north up. */
   top(): void {
-    const [x, y] = this.relief.middle;
-    this.plan(this.relief.local(x, y), 1.08 * Math.max(this.relief.height, this.relief.width / this.perspective.aspect));
+    const [x, y, z] = this.relief.local(...this.relief.middle);
+    const { width, height } = this.relief;
+    const visible = Math.max((1.04 * height) / (1 - this.covered), (1.08 * width) / this.perspective.aspect);
+    this.plan([x, y + (this.covered / 2) * visible, z], visible);
   }
   private plan(target: Place, visible_m: number): void {
     this.setMode("plan");

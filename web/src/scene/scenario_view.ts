@@ -3,7 +3,7 @@ import {
   Box3, Color, Group, Scene, Vector3, type BufferGeometry, type Camera, type Mesh, type MeshLambertMaterial, type Raycaster, type Texture,
 } from "three";
 import type { Line2 } from "three/examples/jsm/lines/Line2.js";
-import type { Frame, ScenarioName } from "../protocol/frame";
+import { recycle, type Frame, type ScenarioName } from "../protocol/frame";
 import type { Grid } from "../protocol/grid";
 import type { Impacts, SceneInfo, Setup } from "../protocol/messages";
 import { Debris } from "./debris";
@@ -38,7 +38,7 @@ export interface Shared {
 
 export class ScenarioView {
   readonly three = new Scene();
-  readonly clock = new FrameClock();
+  readonly clock = new FrameClock(recycle);
   readonly ground: Ground;
   readonly debris: Debris;
   readonly labels: Labels;

@@ -73,6 +73,9 @@ export class Stage {
   readonly daylight: Daylight;
   private hills: Draped | null = null;
   private readonly geometry: BufferGeometry;
+  /** The views in their order. */
+  private drawn: readonly ScenarioView[] = [];
+  private readonly place = { left: 0, top: 0, wide: 1, high: 1 };
   private readonly panes = new Map<ScenarioName, HTMLElement>();
   private readonly speedRamp = rampTextureOf(ramps.speed);
   private readonly readers: (() => void)[] = [];
@@ -116,7 +119,7 @@ export class Stage {
       this.shine();
     });
     twin.onFrame((frame) => this.push(frame));
-    requestAnimationFrame((now) => this.tick(now));
+    requestAnimationFrame(this.tick);
   }
 
   invalidate(): void {
@@ -181,6 +184,7 @@ export class Stage {
       if (view) this.views.set(name, view);
       this.panes.get(name)?.classList.toggle("second", names.indexOf(name) === 1);
     }
+    this.drawn = [...this.views.values()];
     this.element.classList.toggle("two", names.length > 1);
     this.resize();
   }
@@ -214,11 +218,15 @@ export class Stage {
   get stacked(): boolean {
     return this.views.size > 1 && this.width < this.height;
   }
-  /** Place of the k-th view in pixels of the stage, from its top left. */
-  private part(k: number): { left: number; top: number; wide: number; high: number } {
+  /** Place of the k-th view in pixels of the stage, from its top left. The next call changes it. */
+  private part(k: number): Readonly<Stage["place"]> {
     const count = Math.max(1, this.views.size);
-    return this.stacked ? { left: 0, top: (k * this.height) / count, wide: this.width, high: this.height / count }
-      : { left: (k * this.width) / count, top: 0, wide: this.width / count, high: this.height };
+    const { place, stacked, width, height } = this;
+    place.wide = stacked ? width : width / count;
+    place.high = stacked ? height / count : height;
+    place.left = stacked ? 0 : k * place.wide;
+    place.top = stacked ? k * place.high : 0;
+    return place;
   }
   /** `share` of the screen's pixels; a change clears the canvas. */
   private setSharpness(share: number): void {
@@ -226,14 +234,15 @@ export class Stage {
     if (ratio !== this.renderer.getPixelRatio()) this.renderer.setPixelRatio(ratio);
     this.stats.pixelRatio = ratio;
   }
-  private tick(now_ms: number): void {
-    requestAnimationFrame((next) => this.tick(next));
+  // Of a picture as little as possible is allocated here and in what it calls: sixty times a second it would add up.
+  private readonly tick = (now_ms: number): void => {
+    requestAnimationFrame(this.tick);
     if (this.filming) return;
     // Frames from the server are timed by the same clock.
     const now = Math.max(now_ms, 0);
     this.resolution.tick(now);
     if (this.rig.update(now)) this.invalidate();
-    for (const view of this.views.values()) if (view.clock.moving(now)) this.due = true;
+    for (const view of this.drawn) if (view.clock.moving(now)) this.due = true;
     if (!this.due) {
       // A picture drawn at reduced resolution is drawn once more in full.
       if (this.stats.pixelRatio >= Math.min(2, devicePixelRatio) || !this.resolution.standsStill(now)) return;
@@ -245,7 +254,7 @@ export class Stage {
     this.resolution.drew(now);
     this.setSharpness(this.resolution.share);
     this.draw(now);
-  }
+  };
   draw(now: number): void {
     const begun = performance.now();
     const camera = this.rig.camera;
@@ -255,16 +264,13 @@ export class Stage {
     this.stats.detail = this.renderer.getPixelRatio() >= Math.min(2, devicePixelRatio) ? 2 : this.resolution.detail;
     this.daylight.prepare(this.twin.natural, this.rig.mode === "plan", this.stats.detail);
     this.stats.drawCalls = 0;
-    let k = 0;
     let more = false;
-    for (const view of this.views.values()) {
+    for (let k = 0; k < this.drawn.length; ++k) {
+      const view = this.drawn[k];
       const { left, top, wide, high } = this.part(k);
       const bottom = this.height - top - high;
       if (view.update(now, camera, pixels, this.fastest_mps.value)) more = true;
-      if (this.cameraMoved || view.labels.layer.dataset["stale"] !== "no") {
-        view.labels.place(this.rig, wide, high, this.covered(left, top));
-        view.labels.layer.dataset["stale"] = "no";
-      }
+      if (this.cameraMoved || !view.labels.placed) view.labels.place(this.rig, wide, high, this.covered(left, top));
       this.renderer.setViewport(left, bottom, wide, high);
       this.renderer.setScissor(left, bottom, wide, high);
       if (view.shadowsDue) {
@@ -276,7 +282,6 @@ export class Stage {
       this.renderer.render(view.three, camera);
       this.stats.draw_ms = performance.now() - drawn;
       this.stats.drawCalls += this.renderer.info.render.calls;
-      ++k;
       if (view.name === this.twin.edited.value) this.stats.shownTime_s = view.clock.time_s(now) ?? 0;
     }
     if (this.cameraMoved) {
@@ -299,7 +304,7 @@ export class Stage {
   }
   relabel(view: ScenarioView): void {
     view.refreshLabels();
-    view.labels.layer.dataset["stale"] = "yes";
+    view.labels.placed = false;
     this.invalidate();
   }
 

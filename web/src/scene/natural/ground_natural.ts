@@ -51,9 +51,10 @@ const head = /* glsl */ `
     float steep = 1.0 - n.z + 0.10 * (middle.z - 0.5) + 0.06 * (fine.z - 0.5);
     vec3 grass = mix(vec3(0.066, 0.088, 0.032), vec3(0.165, 0.148, 0.072), smoothstep(0.35, 0.72, wide.z + 0.5 * (fine.z - 0.5)));
     Surface s = Surface(grass * (0.75 + 0.5 * grain.z), rough, 0.0);
-    // Shrubs in the shelter of hollows and where the slope holds them.
-    float shrub = smoothstep(0.40, 0.24, middle.w + 0.55 * (fine.z - 0.5) + 0.9 * (0.46 - wide.z));
-    lay(s, vec3(0.024, 0.040, 0.015) * (0.5 + fine.z + 0.5 * grain.z), 1.3 * rough, 0.0, 0.9 * shrub * smoothstep(0.30, 0.2, steep));
+    // Shrubs where the slope holds them: thickets with soft edges, and few between them.
+    float thicket = smoothstep(0.42, 0.62, wide.z + 0.5 * (middle.z - 0.5));
+    float shrub = smoothstep(0.46, 0.20, middle.w + 0.30 * (fine.z - 0.5) + 0.45 * (0.5 - thicket));
+    lay(s, vec3(0.034, 0.052, 0.020) * (0.5 + fine.z + 0.5 * grain.z), 1.3 * rough, 0.0, (0.1 + 0.72 * thicket) * shrub * smoothstep(0.30, 0.2, steep));
     float soil = smoothstep(0.17, 0.25, steep + 0.10 * (wide.z - 0.5)) * smoothstep(0.40, 0.62, fine.z + 0.6 * (middle.z - 0.35));
     lay(s, mix(vec3(0.20, 0.128, 0.070), vec3(0.27, 0.20, 0.13), grain.z), 1.4 * rough, 0.0, 0.85 * soil);
     float rock = smoothstep(0.27, 0.34, steep);
