@@ -70,7 +70,7 @@ export function calibratePanel(twin: Twin): HTMLElement {
   const heading = h("h3", {});
   const form = h("div", { class: "calibrate-form" }, heading, ...first.map((c) => c.element),
     others.length === 0 ? null : h("details", {}, h("summary", {}, "More parameters"), ...others.map((c) => c.element)),
-    h("label", { class: "row" }, two, "Search with the depth-averaged model"),
+    h("label", { class: "two-models" }, two, "Search with the depth-averaged model"),
     h("p", { class: "hint", id: "two-models-help" }, "It takes seconds per run: up to 100 of its runs search, and particles run only where they are needed to confirm."),
     h("div", { class: "row" }, h("label", { class: "row runs", title: "Two parameters need some 30 to 60" }, "Runs at most", runs), h("span", { class: "spring" }), start), problem);
 
