@@ -56,8 +56,6 @@ runs, --runs): emulators learn the difference between the models from the places
 Exit codes: as talus run. A run that fails is excluded; 3: no run of the design was complete.
 )";
 
-constexpr std::size_t runs_beside_fast = 10, default_fast_runs = 100;
-
 Result<calibrate::CalibrationPlan> read_arguments(const CalibrateArguments& arguments) {
     ensemble::EnsemblePlan factors;
     for (const std::string& factor : arguments.factors) {
@@ -69,8 +67,8 @@ Result<calibrate::CalibrationPlan> read_arguments(const CalibrateArguments& argu
         if (arguments.search_with != "depth_averaged") {
             return Error{fmt::format("--search-with {} is refused; it must be depth_averaged", arguments.search_with)};
         }
-        plan.search.runs = runs_beside_fast;
-        plan.search.fast_runs = arguments.fast_runs.value_or(default_fast_runs);
+        plan.search.runs = calibrate::runs_beside_fast;
+        plan.search.fast_runs = arguments.fast_runs.value_or(calibrate::usual_fast_runs);
     } else if (arguments.fast_runs) {
         return Error{"--fast-runs is for --search-with depth_averaged, which is not given"};
     }

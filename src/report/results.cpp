@@ -297,10 +297,15 @@ Json observations(const scene::Scene& scene, const run::RunResult& result) {
                {"source", "Source", "", "", "source"}});
     for (const params::ObservationSpec& observed : scene.spec.observations) {
         const observe::FrontSample computed = front_at(result.observation, observed.chainage);
+        Json velocity = number_or_null<Json>(computed.front_velocity);
+        if (velocity.is_null() && result.zoom &&
+            !contains(result.zoom->area, scene.flow_path.point_at(observed.chainage))) {
+            velocity = "outside the zoom";
+        }
         rows["rows"].push_back({{"observation", observed.name},
                                 {"chainage_m", observed.chainage},
                                 {"observed_mps", observed.front_velocity},
-                                {"computed_mps", number_or_null<Json>(computed.front_velocity)},
+                                {"computed_mps", std::move(velocity)},
                                 {"difference_percent",
                                  number_or_null<Json>(100 * (computed.front_velocity / observed.front_velocity - 1))},
                                 {"particle_speed_mps", number_or_null<Json>(computed.particle_speed)},

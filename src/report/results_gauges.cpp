@@ -13,6 +13,21 @@ namespace {
 
 constexpr std::size_t max_drawn = 12;  // a row of plots each
 
+/// Whether a place lies beyond the area that was computed.
+bool outside_zoom(const run::RunResult& result, const PlanPoint& place) {
+    return result.zoom && !contains(result.zoom->area, place);
+}
+
+/// Gauges at which any of the runs had debris.
+std::vector<std::size_t> wet_gauges(const std::vector<NamedRun>& runs) {
+    std::vector<std::size_t> wet;
+    for (std::size_t k = 0; k < runs.front().result->observation.gauges.size(); ++k) {
+        const auto had_debris = [&](const NamedRun& run) { return run.result->observation.gauges[k].peak_depth > 0; };
+        if (std::any_of(runs.begin(), runs.end(), had_debris)) wet.push_back(k);
+    }
+    return wet;
+}
+
 std::string place_of(const terrain::Gauge& gauge) {
     return std::isfinite(gauge.chainage) ? fmt::format("chainage {} m", plain(gauge.chainage))
                                          : fmt::format("{} E {} N", fixed(gauge.at.x, 1), fixed(gauge.at.y, 1));
@@ -34,6 +49,9 @@ Json rows_of(const std::vector<NamedRun>& runs) {
             Json row = {{"gauge", record.gauge.name}, {"place", place_of(record.gauge)}};
             if (runs.size() > 1) row["model"] = run.name;
             row["arrival_s"] = number_or_null<Json>(record.arrival_time);
+            if (row["arrival_s"].is_null() && outside_zoom(*run.result, record.gauge.at)) {
+                row["arrival_s"] = "outside the zoom";
+            }
             row["peak_depth_m"] = record.peak_depth;
             row["peak_depth_time_s"] = number_or_null<Json>(record.peak_depth_time);
             row["peak_speed_mps"] = record.peak_speed;
@@ -45,13 +63,14 @@ Json rows_of(const std::vector<NamedRun>& runs) {
 }
 
 /// A row of two plots per gauge: depth and speed, a curve per run.
-Json chart_of(const std::vector<NamedRun>& runs) {
+Json chart_of(const std::vector<NamedRun>& runs, const std::vector<std::size_t>& drawn) {
     constexpr double step = 190, height = 120, width = 410;
-    const std::size_t count = std::min(max_drawn, runs.front().result->observation.gauges.size());
+    const std::size_t count = std::min(max_drawn, drawn.size());
     ValueRange time{0, 0};
     for (const NamedRun& run : runs) time.include(run.result->simulated_time);
     Chart chart{"Depth and speed at gauges", 1000, step * static_cast<double>(count) + 50, {}};
-    for (std::size_t k = 0; k < count; ++k) {
+    for (std::size_t place = 0; place < count; ++place) {
+        const std::size_t k = drawn[place];
         ValueRange depths{0, 1e-3}, speeds{0, 1e-3};
         for (const NamedRun& run : runs) {
             for (const observe::GaugeSample& s : run.result->observation.gauges[k].rows) {
@@ -59,7 +78,7 @@ Json chart_of(const std::vector<NamedRun>& runs) {
                 speeds.include(1.1 * s.speed);
             }
         }
-        const double top = 34 + step * static_cast<double>(k);
+        const double top = 34 + step * static_cast<double>(place);
         Plot depth(66, top, width, height, time, depths), speed(66 + width + 90, top, width, height, time, speeds);
         depth.axes("time, s", "depth, m");
         speed.axes("time, s", "speed, m/s");
@@ -72,7 +91,7 @@ Json chart_of(const std::vector<NamedRun>& runs) {
                 v.push_back(s.speed);
             }
             const std::string style = fmt::format("series v{}", i);
-            depth.line(t, h, style, k == 0 && runs.size() > 1 ? runs[i].name : "");
+            depth.line(t, h, style, place == 0 && runs.size() > 1 ? runs[i].name : "");
             speed.line(t, v, style);
         }
         const observe::GaugeRecord& record = runs.front().result->observation.gauges[k];
@@ -94,10 +113,11 @@ Json gauges(const std::vector<NamedRun>& runs) {
         const double cell = run.result->map_cell;
         cells.push_back({{"another", !cells.empty()}, {"model", run.name}, {"cell_m", cell}});
     }
+    const std::vector<std::size_t> drawn = wet_gauges(runs);
     return {{"table", rows_of(runs)},
-            {"chart", chart_of(runs)},
+            {"chart", drawn.empty() ? Json() : chart_of(runs, drawn)},
             {"cells", std::move(cells)},
-            {"not_drawn", count > max_drawn ? Json(count - max_drawn) : Json()}};
+            {"not_drawn", drawn.size() > max_drawn ? Json(drawn.size() - max_drawn) : Json()}};
 }
 
 }  // namespace talus::report

@@ -10,6 +10,7 @@
 #include "core/try.hpp"
 #include "depth/entrainment.hpp"
 #include "depth/inflow.hpp"
+#include "depth/internal_friction.hpp"
 #include "depth/material.hpp"
 #include "observe/followed_path.hpp"
 #include "observe/grid_observer.hpp"
@@ -25,14 +26,19 @@ namespace {
 
 constexpr std::uint64_t steps_between_good_grids = 64;  // a look at all cells takes less than a step
 
+double internal_friction(const params::MaterialSpec& material) {
+    return material.internal_friction_coefficient.value_or(material.friction_coefficient);
+}
+
 /// A run of the depth-averaged model, step by step.
 class GridRun {
   public:
-    explicit GridRun(const scene::Scene& scene)
+    GridRun(const scene::Scene& scene, Inside inside)
         : scene_(scene),
           ground_(grid_ground(scene)),
           solver_(ground_.bed, depth::material_of(scene.spec.material), ground_.values),
           inflows_(solver_, scene.inflows),
+          friction_inside_(solver_, inside == Inside::as_particles ? internal_friction(scene.spec.material) : 0),
           bed_(grid_bed(scene, ground_)),
           observer_(solver_, scene.flow_path, scene.spec.outputs, ground_.structures),
           clock_(scene.spec.solver) {
@@ -61,6 +67,7 @@ class GridRun {
             if (wait > 0) longest = std::min(longest, wait);
         }
         const Result<double> stepped = inflows_.advance(solver_, longest, observer_.released());
+        friction_inside_.resist(solver_);
         wall_time_ += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
         smallest_ = std::min(smallest_, solver_.time_step());
         largest_ = std::max(largest_, solver_.time_step());
@@ -185,6 +192,7 @@ class GridRun {
     GridGround ground_;
     depth::Solver solver_;
     depth::Inflows inflows_;
+    depth::InternalFriction friction_inside_;
     depth::Entrainment bed_;
     observe::GridObserver observer_;
     std::vector<std::size_t> order_;
@@ -203,10 +211,10 @@ class GridRun {
 
 }  // namespace
 
-Result<RunResult> run_depth_averaged(const scene::Scene& scene, const RunOptions& options) {
+Result<RunResult> run_depth_averaged(const scene::Scene& scene, const RunOptions& options, Inside inside) {
     const Threads threads(scene.spec.solver.thread_count);
     return threads.execute([&]() -> Result<RunResult> {
-        GridRun run(scene);
+        GridRun run(scene, inside);
         TALUS_TRY(run.check_inflows());
         const auto stopped = [&] { return options.stop_requested && options.stop_requested->load(); };
         FrameClock clock(scene, options);

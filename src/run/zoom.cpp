@@ -105,7 +105,7 @@ Result<ZoomedScene> zoom_in(const scene::Scene& scene, const RunOptions& options
         if (!flow) flow.emplace(solver, *scene.zoom);
         flow->record(solver);
     };
-    TALUS_ASSIGN(const RunResult run, run_depth_averaged(event, recording));
+    TALUS_ASSIGN(const RunResult run, run_depth_averaged(event, recording, Inside::as_particles));
     if (run.status == RunStatus::fault) return Error{fmt::format("{}: zoom: {}", file, run.stop_reason)};
     if (run.status == RunStatus::interrupted) {
         return Error{file + ": interrupted before the particles of the zoom began"};

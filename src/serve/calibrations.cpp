@@ -68,7 +68,7 @@ Result<ensemble::Factor> read_factor(const json& entry) {
 
 Result<calibrate::CalibrationPlan> read_plan(const json& wanted) {
     calibrate::CalibrationPlan plan;
-    if (wanted.is_object()) TALUS_TRY(twin::check_keys(wanted, {"parameters", "runs"}));
+    if (wanted.is_object()) TALUS_TRY(twin::check_keys(wanted, {"parameters", "runs", "search_with"}));
     const auto list = wanted.is_object() ? wanted.find("parameters") : wanted.end();
     if (list == wanted.end() || !list->is_array() || list->empty() || list->size() > max_parameters) {
         return Error{fmt::format("parameters: must be a list of 1 to {}, each with key, low and high", max_parameters)};
@@ -79,6 +79,13 @@ Result<calibrate::CalibrationPlan> read_plan(const json& wanted) {
             if (other.key == factor.key) return Error{fmt::format("parameters: {} is given twice", other.key)};
         }
         plan.factors.push_back(std::move(factor));
+    }
+    if (const auto with = wanted.find("search_with"); with != wanted.end() && !with->is_null()) {
+        if (*with != "depth_averaged") {
+            return Error{fmt::format("search_with = {}: must be depth_averaged or null", with->dump().substr(0, 40))};
+        }
+        plan.search.runs = calibrate::runs_beside_fast;
+        plan.search.fast_runs = calibrate::usual_fast_runs;
     }
     if (const auto runs = wanted.find("runs"); runs != wanted.end()) {
         if (!runs->is_number_unsigned() || runs->get<std::uint64_t>() > 2000) {
@@ -130,6 +137,8 @@ Calibrations::Calibrations(std::shared_ptr<const scene::Scene> scene, Calibratio
                {"phase", nullptr},
                {"runs_at_most", 0},
                {"runs_failed", 0},
+               {"fast_runs", 0},
+               {"fast_runs_at_most", 0},
                {"wall_remaining_s", nullptr},
                {"runs", json::array()},
                {"map", nullptr},
@@ -201,27 +210,33 @@ fs::path Calibrations::new_folder() const {
     }
 }
 
-void Calibrations::work(const calibrate::CalibrationPlan& plan, const std::string& by, const Respond& respond) {
+void Calibrations::work(calibrate::CalibrationPlan plan, const std::string& by, const Respond& respond) {
     pthread_setname_np(pthread_self(), "calibration");
     setpriority(PRIO_PROCESS, 0, niceness);  // of this thread and those that it starts
     const fs::path folder = new_folder();
     Ending ending;
     try {
-        const Result<ensemble::PlannedRuns> runs = plan_calibration(plan, settings_.source, *scene_);
-        if (!runs) {
+        const auto refuse = [&](const std::string& why) {
             {
                 const std::lock_guard lock(mutex_);
                 busy_ = false;
             }
-            respond(error_response(400, runs.error().message));
-            return;
+            respond(error_response(400, why));
+        };
+        const Result<ensemble::PlannedRuns> runs = plan_calibration(plan, settings_.source, *scene_);
+        if (!runs) return refuse(runs.error().message);
+        if (plan.search.fast_runs > 0) {
+            auto fast = plan_fast_model(plan, settings_.source, *scene_);
+            if (!fast) return refuse(fast.error().message);
+            plan.fast.emplace(*std::move(fast));
         }
         begin(plan, by);
         std::string names;
         for (const ensemble::Factor& factor : plan.factors) {
             names += (names.empty() ? "" : ", ") + twin::label_of(*find_live_parameter(factor.key));
         }
-        const std::string done = fmt::format("calibration of {} with at most {} runs", names, plan.search.runs);
+        std::string done = fmt::format("calibration of {} with at most {} runs", names, plan.search.runs);
+        if (plan.fast) done += fmt::format(" and {} of the depth-averaged model", plan.search.fast_runs);
         respond(json_response(200, {{"done", done}, {"created", nullptr}}));
         ending = calibrate_in(folder, plan, *runs);
     } catch (const std::exception& error) {  // running out of memory here must not end the live run
@@ -273,6 +288,8 @@ void Calibrations::begin(const calibrate::CalibrationPlan& plan, const std::stri
     status_["phase"] = search_phase_name(calibrate::SearchPhase::design);
     status_["runs_at_most"] = plan.search.runs;
     status_["runs_failed"] = 0;
+    status_["fast_runs"] = 0;
+    status_["fast_runs_at_most"] = plan.search.fast_runs;
     status_["runs"] = json::array();
     for (const char* none : {"wall_remaining_s", "map", "best", "result"}) status_[none] = nullptr;
     tell_now();
@@ -280,6 +297,10 @@ void Calibrations::begin(const calibrate::CalibrationPlan& plan, const std::stri
 
 void Calibrations::take_run(const calibrate::CalibrationRun& run) {
     const std::lock_guard lock(mutex_);
+    if (run.fast) {
+        status_["fast_runs"] = status_["fast_runs"].get<std::size_t>() + 1;
+        return tell_now();
+    }
     json made = {
         {"values", run.values}, {"phase", search_phase_name(run.phase)}, {"misfit", number_or_null<json>(run.misfit)}};
     if (std::isfinite(run.misfit)) {

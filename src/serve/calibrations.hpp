@@ -56,7 +56,7 @@ class Calibrations {
         const char* state = "failed";
         std::string message;
     };
-    void work(const calibrate::CalibrationPlan& plan, const std::string& by, const Respond& respond);
+    void work(calibrate::CalibrationPlan plan, const std::string& by, const Respond& respond);
     [[nodiscard]] Ending calibrate_in(const std::filesystem::path& folder, const calibrate::CalibrationPlan& plan,
                                       const ensemble::PlannedRuns& runs);
     void begin(const calibrate::CalibrationPlan& plan, const std::string& by);

@@ -16,6 +16,14 @@ export ASAN_OPTIONS=${ASAN_OPTIONS:+$ASAN_OPTIONS:}detect_leaks=0
 for file in probability_depth_0.1m.tif peak_depth_p95.tif buildings.csv distributions.csv statistics.json; do
     cmp "$folder/one/$file" "$folder/three/$file"
 done
+# So is one with runs of the depth-averaged model beside it.
+fast=("${ensemble[@]}" --fast-runs 12 --set solver.grid_cell_m=5)
+"$program" "${fast[@]}" -o "$folder/fast_one"
+"$mpirun" -n 2 "$program" "${fast[@]}" -o "$folder/fast_two"
+for file in probability_depth_0.1m.tif peak_depth_p95.tif buildings.csv distributions.csv statistics.json two_models.csv; do
+    cmp "$folder/fast_one/$file" "$folder/fast_two/$file"
+done
+(($(find "$folder/fast_two/fast/runs" -name '*.run' | wc -l) == 12))
 # All ranks stop at bad input, and one of them says why.
 status=0
 "$mpirun" -n 2 "$program" ensemble --vary material.viscosity=0.2:0.1 -o "$folder/bad" 2>"$folder/error" || status=$?

@@ -348,13 +348,15 @@ TEST(Report, DrawsDepthAndSpeedAtGaugesOverTime) {
     }
     const report::Json results = report::run_results(s.scene, s.result, {});
     const auto& plots = results["gauges"]["chart"]["plots"];
-    ASSERT_EQ(plots.size(), 4U) << "depth and speed of two gauges";
+    ASSERT_EQ(plots.size(), 2U) << "depth and speed of the gauge that debris reached";
     EXPECT_EQ(plots[0]["curves"][0]["y"].size(), 4U);
     const report::Json both = report::gauges({{"particles", &s.result}, {"depth-averaged", &s.result}});
     EXPECT_EQ(both["table"]["rows"].size(), 4U);
     EXPECT_EQ(both["table"]["rows"][1]["model"], "depth-averaged");
     EXPECT_EQ(both["chart"]["plots"][0]["curves"].size(), 2U);
     EXPECT_EQ(both["chart"]["plots"][0]["curves"][1]["name"], "depth-averaged");
+    s.result.observation.gauges.erase(s.result.observation.gauges.begin());
+    EXPECT_TRUE(has(words_of(s.html()), "No debris reached a gauge."));
 }
 
 TEST(Report, SaysWhatAZoomWasAndItsBalance) {
@@ -377,17 +379,26 @@ TEST(Report, SaysWhatAZoomWasAndItsBalance) {
     zoom.discharge.assign(400, 0);
     std::fill(zoom.discharge.begin() + 300, zoom.discharge.end(), 16.1);
     s.result.zoom = zoom;
+    s.result.observation.gauges = {{.gauge = {"mill", {824210, 825560}}}, {.gauge = {"door", {824120, 825510}}}};
+    const report::Json rows = report::run_results(s.scene, s.result, {})["gauges"]["table"]["rows"];
+    EXPECT_EQ(rows[0]["arrival_s"], "outside the zoom");
+    EXPECT_TRUE(rows[1]["arrival_s"].is_null());
+    run::RunResult nearby = s.result;
+    nearby.observation.front.clear();
+    for (const auto& row : report::run_results(s.scene, nearby, {})["observations"]["rows"]) {
+        EXPECT_EQ(row["computed_mps"], "outside the zoom");
+    }
     const std::string words = words_of(s.html());
-    for (const char* part :
-         {"the surroundings of House 1 only", "40 × 30 m around House 1", "from 30.0 s on", "4.0 particles",
-          "not fed back", "161.0", "160.9", "5000.0", "166.8 m³ in", "600 m³ came into the zoom"}) {
+    for (const char* part : {"the surroundings of House 1 only", "40 × 30 m around House 1", "from 30.0 s on",
+                             "4.0 particles", "not fed back", "outside the zoom", "but for what comes in", "161.0",
+                             "160.9", "5000.0", "166.8 m³ in", "600 m³ came into the zoom"}) {
         EXPECT_TRUE(has(words, part)) << part;
     }
 }
 
 TEST(Results, HoldAllThatTheReportShows) {
     Sample s;
-    s.result.observation.gauges = {{.gauge = {"mill", {824210, 825560}}}};
+    s.result.observation.gauges = {{.gauge = {"mill", {824210, 825560}}, .peak_depth = 1}};
     s.result.zoom.emplace();
     s.result.zoom->particle_spacing = 0.3;
     s.result.zoom->simulated_time = 60;

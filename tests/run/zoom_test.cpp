@@ -144,6 +144,20 @@ TEST_F(ZoomedRun, brings_what_crosses_the_boundary_to_the_structure) {
     EXPECT_LT(result->particles, 1.001 * scene.releases[0].volume);
 }
 
+TEST_F(ZoomedRun, is_fed_by_debris_with_the_friction_inside_of_the_particles) {
+    const auto first_time = [&](const char* coefficient) {
+        const auto zoomed =
+            zoom_in(loaded(dam(150), {"zoom.structure=dam", "zoom.margin_m=20", "zoom.particle_spacing_m=1",
+                                      std::string("material.internal_friction_coefficient=") + coefficient}),
+                    {});
+        if (!zoomed) throw std::runtime_error(zoomed.error().message);
+        return zoomed->record.first_time();
+    };
+    const double frictionless = first_time("0"), as_the_ground = first_time("none"), more = first_time("0.8");
+    EXPECT_GT(as_the_ground, frictionless + 0.05);
+    EXPECT_GT(more, as_the_ground);
+}
+
 TEST_F(ZoomedRun, has_so_many_layers_over_what_crosses_the_boundary) {
     const scene::Scene scene = loaded(dam(150), {"zoom.structure=dam", "zoom.margin_m=20", "zoom.target_layers=2"});
     const auto zoomed = zoom_in(scene, {});

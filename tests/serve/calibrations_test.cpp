@@ -93,6 +93,29 @@ TEST_F(CalibrationsTest, goes_on_beside_the_live_run_and_can_be_cancelled) {
     EXPECT_EQ(as_controller().post("/api/calibration", two_parameters).status, 200);
 }
 
+TEST_F(CalibrationsTest, searches_with_the_depth_averaged_model) {
+    start({"solver.end_time_s=1"});
+    json two_models = two_parameters;
+    two_models["search_with"] = "depth_averaged";
+    two_models["runs"] = 3;
+    const Answer begun = as_controller().post("/api/calibration", two_models);
+    ASSERT_EQ(begun.status, 200) << begun.body;
+    EXPECT_EQ(begun.json()["done"],
+              "calibration of friction coefficient, viscosity with at most 3 runs and 100 of the depth-averaged model");
+    json now = status();
+    for (int i = 0; i < 1200 && now["fast_runs"] < 2; ++i) {
+        std::this_thread::sleep_for(std::chrono::milliseconds(50));
+        now = status();
+    }
+    EXPECT_GE(now["fast_runs"], 2);
+    EXPECT_EQ(now["fast_runs_at_most"], 100);
+    EXPECT_EQ(now["runs"].size(), 0U) << "particles wait for the fast model's design";
+    EXPECT_EQ(as_controller().ask("DELETE", "/api/calibration").status, 200);
+    EXPECT_EQ(status_after({"cancelled"})["state"], "cancelled");
+    two_models["search_with"] = "particles";
+    EXPECT_THAT(as_controller().post("/api/calibration", two_models).body, HasSubstr("depth_averaged or null"));
+}
+
 TEST_F(CalibrationsTest, what_cannot_be_is_refused_in_a_sentence) {
     const auto refusal = [&](const json& body, int status = 400) {
         const Answer answer = as_controller().post("/api/calibration", body);

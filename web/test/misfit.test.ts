@@ -7,7 +7,7 @@ const parameter = (key: string, value: number | null, low: number | null = 0, hi
 const run = (misfit: number | null) => ({ values: [0.3, 0.1], phase: "design" as const, misfit });
 const status = (parts: Partial<CalibrationStatus>): CalibrationStatus => ({
   state: "running", why_not: null, by: "Ada", message: "", observations: [], parameters: [], phase: "design", runs_at_most: 40, runs_failed: 0,
-  wall_remaining_s: null, runs: [], map: null, best: null, result: null, ...parts,
+  fast_runs: 0, fast_runs_at_most: 0, wall_remaining_s: null, runs: [], map: null, best: null, result: null, ...parts,
 });
 
 describe("scale of misfits", () => {
@@ -45,6 +45,8 @@ describe("how far it is", () => {
   it("says runs, phase and time", () => {
     expect(progressText(status({ runs: [run(1), run(null)], runs_failed: 1, wall_remaining_s: 200 })))
       .toBe("2 of at most 40 runs, 1 failed · spread over the ranges · about 3\u202fmin left at most");
+    expect(progressText(status({ runs: [run(1)], runs_at_most: 10, fast_runs: 38, fast_runs_at_most: 100 })))
+      .toBe("38 of at most 100 runs depth-averaged, 1 of at most 10 runs of particles · spread over the ranges");
     expect(progressText(status({ state: "cancelled", runs: [run(1)] }))).toBe("Cancelled after 1 runs");
     expect(progressText(status({ state: "failed", message: "disk full" }))).toContain("disk full");
     expect(progressText(status({ state: "idle" }))).toBe("");

@@ -90,12 +90,18 @@ async function testCalibration(run, server, page) {
     await page.click(".controls button:has-text('Undo')");
     await until(async () => JSON.stringify((await setup()).parameters), (p) => p === JSON.stringify(before), "one undo takes both back");
   });
-  await run.check("a calibration can be cancelled, by keyboard too", async () => {
+  await run.check("a calibration with the depth-averaged model, which can be cancelled, by keyboard too", async () => {
+    await page.locator("label:has-text('Search with the depth-averaged model') input").check();
+    assert.equal(await page.inputValue("[aria-label='Runs at most']"), "10");
+    await run.shot(page, "35b-two-models");
     await page.locator(".calibrate-form button.primary").focus();
     await page.keyboard.press("Enter");
     const focused = () => page.evaluate(() => document.activeElement.textContent);
     await until(focused, (text) => text === "Cancel", "the focus goes on to what takes the place of the button");
     assert.equal((await status()).state, "running");
+    await until(() => page.textContent(".calibrate-progress"), (t) => /^\d+ of at most 100 runs depth-averaged, 0 of at most 10 runs of particles/.test(t), "both models are counted");
+    await until(async () => (await status()).fast_runs, (n) => n >= 2, "runs of the fast model");
+    assert.equal((await status()).runs.length, 0, "particles wait for the fast model's design");
     await page.keyboard.press("Enter");
     const end = await until(async () => (await status()).state, (state) => state !== "running" && state !== "cancelling", "an end");
     assert.equal(end, "cancelled");

@@ -9,6 +9,7 @@ import { capital, rangeRow, rangesOf } from "../ui/range_row";
 import { MisfitMap } from "./misfit_map";
 
 const usualRuns = 40;
+const runsBesideFast = 10;
 
 function observationTable(status: CalibrationStatus): HTMLElement {
   const ran = status.observations.some((o) => o.best !== null || o.deviation !== null);
@@ -48,6 +49,12 @@ export function calibratePanel(twin: Twin): HTMLElement {
   const first = choices.filter((c) => c.free.checked);
   const others = choices.filter((c) => !c.free.checked);
   const runs = h("input", { type: "number", min: 8, max: 2000, step: 1, value: usualRuns, "aria-label": "Runs at most" });
+  const two = h("input", { type: "checkbox", "aria-describedby": "two-models-help" });
+  const setRuns = (): void => {
+    runs.value = String(two.checked ? runsBesideFast : usualRuns);
+    runs.min = two.checked ? "3" : "8";
+  };
+  two.addEventListener("change", setRuns);
   const problem = h("p", { class: "field-note", role: "alert" });
   let successor: HTMLButtonElement | null = null;  // of a pressed button that disappears: it gets the keyboard focus
   const start = button("Start", { class: "primary", onclick: () => void begin() });
@@ -57,12 +64,14 @@ export function calibratePanel(twin: Twin): HTMLElement {
     if (typeof ranges === "string") return;
     start.disabled = true;
     successor = cancel;
-    if (!await twin.attempt(() => twin.api.calibrate(ranges, runs.valueAsNumber))) successor = null;
+    if (!await twin.attempt(() => twin.api.calibrate(ranges, runs.valueAsNumber, two.checked ? "depth_averaged" : null))) successor = null;
     show();
   };
   const heading = h("h3", {});
   const form = h("div", { class: "calibrate-form" }, heading, ...first.map((c) => c.element),
     others.length === 0 ? null : h("details", {}, h("summary", {}, "More parameters"), ...others.map((c) => c.element)),
+    h("label", { class: "two-models" }, two, "Search with the depth-averaged model"),
+    h("p", { class: "hint", id: "two-models-help" }, "It takes seconds per run: up to 100 of its runs search, and particles run only where they are needed to confirm."),
     h("div", { class: "row" }, h("label", { class: "row runs", title: "Two parameters need some 30 to 60" }, "Runs at most", runs), h("span", { class: "spring" }), start), problem);
 
   const map = new MisfitMap();
@@ -115,7 +124,7 @@ export function calibratePanel(twin: Twin): HTMLElement {
       free.disabled = hindrance !== null;
       for (const end of ends) end.disabled = hindrance !== null || !free.checked;
     }
-    runs.disabled = hindrance !== null;
+    runs.disabled = two.disabled = hindrance !== null;
     cancel.disabled = hindrance !== null || status.state === "cancelling";
     cancel.hidden = bar.hidden = !runningNow;
     if (successor === (runningNow ? cancel : start) && !successor.disabled) {

@@ -88,8 +88,8 @@ export class Api {
   addScenario = async (of: ScenarioName, action: Action | null): Promise<NewScenario> =>
     (await (await this.ask("POST", "scenarios", { copy_of: of, ...(action === null ? {} : { action }) })).json()) as NewScenario;
   endScenario = async (s: ScenarioName): Promise<void> => void (await this.ask("DELETE", `scenarios/${s}`));
-  calibrate = async (parameters: { key: string; low: number; high: number }[], runs: number): Promise<void> =>
-    void (await this.ask("POST", "calibration", { parameters, runs }));
+  calibrate = async (parameters: { key: string; low: number; high: number }[], runs: number, searchWith: "depth_averaged" | null): Promise<void> =>
+    void (await this.ask("POST", "calibration", { parameters, runs, search_with: searchWith }));
   cancelCalibration = async (): Promise<void> => void (await this.ask("DELETE", "calibration"));
   start = (): Promise<StartPage> => this.json("start");
   openScene = async (what: { scene?: string; session?: string; ensemble?: string; replace: boolean }): Promise<void> => void (await this.ask("POST", "open", what));

@@ -227,6 +227,9 @@ export interface CalibrationStatus {
   phase: CalibrationRun["phase"] | null;
   runs_at_most: number;
   runs_failed: number;
+  /** Of the depth-averaged model, which searches; 0: it does not. */
+  fast_runs: number;
+  fast_runs_at_most: number;
   wall_remaining_s: number | null;
   runs: CalibrationRun[];
   /** By the emulators over the first two parameters, by rows of the second; one row where there is one parameter. */

@@ -58,7 +58,8 @@ const phases = { design: "spread over the ranges", search: "search for the best"
 
 /** Progress of a calibration, in a sentence. */
 export function progressText(status: CalibrationStatus): string {
-  const done = `${status.runs.length} of at most ${status.runs_at_most} runs`;
+  const fast = status.fast_runs_at_most > 0 ? `${status.fast_runs} of at most ${status.fast_runs_at_most} runs depth-averaged, ` : "";
+  const done = `${fast}${status.runs.length} of at most ${status.runs_at_most} runs${fast ? " of particles" : ""}`;
   const failed = status.runs_failed > 0 ? `, ${status.runs_failed} failed` : "";
   switch (status.state) {
     case "idle": return "";
