@@ -103,8 +103,8 @@ const pictures = {
       figures.push(await page.locator(".maps figure.map:visible > svg").screenshot());
     }
     const both = await blank();
-    await both.setViewportSize({ width: 1760, height: 900 });
-    await both.setContent(`<div style="display: flex; gap: 12px">${figures.map((png) => `<img src="data:image/png;base64,${png.toString("base64")}">`).join("")}</div>`);
+    await both.setViewportSize({ width: 1840, height: 900 });
+    await both.setContent(`<div style="display: flex; gap: 12px; width: max-content">${figures.map((png) => `<img src="data:image/png;base64,${png.toString("base64")}">`).join("")}</div>`);
     await both.waitForFunction(() => [...document.images].every((image) => image.complete));
     await keep("both_models", both, await both.locator("div").screenshot());
   },

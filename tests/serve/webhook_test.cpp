@@ -1,3 +1,5 @@
+#include "serve/webhook.hpp"
+
 #include <array>
 #include <atomic>
 #include <mutex>
@@ -10,7 +12,6 @@
 
 #include "serve/alerts_fixture.hpp"
 #include "serve/mqtt_link.hpp"
-#include "serve/webhook.hpp"
 
 namespace talus::test {
 namespace {
