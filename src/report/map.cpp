@@ -154,7 +154,8 @@ nlohmann::json placed(const Grid<float>& grid, const ReadOut& values, const std:
 void draw_classes(Svg& svg, const MapLayer& shown, const Classes& classes, double most, const MapFrame& frame) {
     const HazardMap& layer = shown.style;
     const double x = frame.right() + 20;
-    svg.text("legend-title", x, frame.top + 13, shown.tab);
+    constexpr std::size_t wide = 22;  // letters that the column has room for
+    svg.text(shown.tab.size() > wide ? "legend-title long" : "legend-title", x, frame.top + 13, shown.tab);
     svg.text("legend-unit", x, frame.top + 31,
              !layer.categories.empty() ? shown.legend
              : std::isfinite(most) ? fmt::format("{}, at most {} {}", layer.unit, fixed(most, shown.digits), layer.unit)

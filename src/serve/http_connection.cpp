@@ -79,6 +79,7 @@ class HttpConnection : public std::enable_shared_from_this<HttpConnection> {
     std::string piece_;
     // Of the answer that is being written.
     Bytes body_;
+    std::function<void()> then_;  // once it is
     std::optional<http::response<http::span_body<const char>>> message_;
     bool close_ = false;
     std::size_t drained_ = 0;
@@ -358,6 +359,7 @@ void HttpConnection::respond(Response response) {
         message.set(http::field::content_disposition, fmt::format("attachment; filename=\"{}\"", response.file_name));
     }
     body_ = std::move(response.body);
+    then_ = std::move(response.written);
     write(std::move(message));
 }
 
@@ -378,6 +380,7 @@ void HttpConnection::write(http::response<http::span_body<const char>> message) 
 void HttpConnection::on_written(beast::error_code error) {
     message_.reset();
     body_.reset();
+    if (const auto then = std::exchange(then_, nullptr)) then();
     if (error) return;
     if (close_) {
         linger();

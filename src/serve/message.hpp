@@ -45,6 +45,7 @@ struct Response {
     std::string file_name;  ///< file name under which a browser saves the body; empty: displayed
     std::string allow;      ///< methods, for status 405
     bool document = false;  ///< a page with styles, pictures and scripts of its own, which reach nothing else
+    std::function<void()> written = {};  ///< called on the server's thread once it is, or cannot be
 };
 
 /// Answers a request: once, from any thread.

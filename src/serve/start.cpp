@@ -377,8 +377,10 @@ void Start::add_job(const Request& request, const Respond& respond) {
 }
 
 void Start::quit(const Respond& respond) {
-    respond(done("talus has ended"));
-    if (settings_.on_quit) settings_.on_quit();
+    Response answer = done("talus has ended");
+    // The end of the server would be the end of an answer on its way.
+    answer.written = settings_.on_quit;
+    respond(std::move(answer));
 }
 
 }  // namespace talus::serve

@@ -50,6 +50,7 @@ try {
   const inspector = await page.context().newCDPSession(page);
   await inspector.send("HeapProfiler.startSampling", { samplingInterval: 2048, includeObjectsCollectedByMajorGC: true, includeObjectsCollectedByMinorGC: true });
   const sampled = (await pictures(page, 300)).length;
+  if (sampled === 0) throw new Error("no picture was drawn meanwhile: the run is over, or the machine is too slow");
   const { profile } = await inspector.send("HeapProfiler.stopSampling");
   const drawing = new Map();
   let all = 0;

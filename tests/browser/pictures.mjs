@@ -62,12 +62,12 @@ const pictures = {
   /** Debris on its way to the village, in the natural look, from the side of the valley. */
   async twin() {
     const server = await serve("--set", "solver.target_particle_count=10000");
-    await compute(server, ["A"], 26);
+    await compute(server, ["A"], 34);
     const { origin, flow_path, title } = await server.ask("scene");
     const at = (chainage) => flow_path.points[flow_path.chainage_m.findIndex((c) => c >= chainage)].map((v, axis) => v - origin[axis]);
-    const [target, low] = [at(185), at(330)];
+    const [target, low] = [at(215), at(345)];
     const [x, y] = [low[0] - target[0], low[1] - target[1]].map((v) => v / Math.hypot(low[0] - target[0], low[1] - target[1]));
-    const position = [target[0] + 165 * x - 75 * y, target[1] + 165 * y + 75 * x, target[2] + 95];
+    const position = [target[0] + 215 * x - 60 * y, target[1] + 215 * y + 60 * x, target[2] + 105];
     const page = await run.open(server.controller, { name: "Ada", width: 1440, height: 900, finest: true, look: "natural",
       prepare: (page) => page.addInitScript(([key, views]) => localStorage.setItem(key, JSON.stringify(views)), [`talus-views${title}`, [{ position, target }]]) });
     await inControl(page);
@@ -96,11 +96,17 @@ const pictures = {
     execFileSync(talus, ["compare", "--set", "solver.target_particle_count=3000", "--set", "solver.grid_cell_m=1", "-o", out], { env: programEnvironment, stdio: "ignore" });
     const page = await browser.newPage({ viewport: { width: 1440, height: 900 } });
     await page.goto(pathToFileURL(join(out, "report.html")).href);
-    const boxes = [];
-    for (const figure of (await page.locator(".maps figure.map:visible").all()).slice(0, 2)) boxes.push(await figure.boundingBox());
-    const [x, y] = [Math.min(...boxes.map((b) => b.x)), Math.min(...boxes.map((b) => b.y))];
-    const clip = { x, y, width: Math.max(...boxes.map((b) => b.x + b.width)) - x, height: Math.max(...boxes.map((b) => b.y + b.height)) - y };
-    await keep("both_models", page, await page.screenshot({ clip, fullPage: true }));
+    // One is shown at a time, chosen by its tab.
+    const figures = [];
+    for (const tab of (await page.locator(".tabs button").all()).slice(0, 2)) {
+      await tab.click();
+      figures.push(await page.locator(".maps figure.map:visible > svg").screenshot());
+    }
+    const both = await blank();
+    await both.setViewportSize({ width: 1840, height: 900 });
+    await both.setContent(`<div style="display: flex; gap: 12px; width: max-content">${figures.map((png) => `<img src="data:image/png;base64,${png.toString("base64")}">`).join("")}</div>`);
+    await both.waitForFunction(() => [...document.images].every((image) => image.complete));
+    await keep("both_models", both, await both.locator("div").screenshot());
   },
   /** The map of peak depths of the report. */
   async report_map() {
@@ -108,7 +114,7 @@ const pictures = {
     execFileSync(talus, ["run", "--set", "solver.target_particle_count=10000", "-o", out, scene], { env: programEnvironment, stdio: "ignore" });
     const page = await browser.newPage({ viewport: { width: 1280, height: 900 } });
     await page.goto(pathToFileURL(join(out, "report.html")).href);
-    await keep("report_map", page, await page.locator("figure.map[data-layer^=peak_depth] > svg").first().screenshot());
+    await keep("report_map", await blank(), await page.locator("figure.map[data-layer^=peak_depth] > svg").first().screenshot());
   },
 };
 try {

@@ -209,14 +209,14 @@ TEST(ServeCommand, the_start_page_has_the_same_options_of_triggers_and_alarms) {
         }
         kill(process, SIGINT);
     };
-    const auto outcome =
-        run_program({"start", "slope.toml", "--no-browser", "--json", "--folder", "data", "--port",
-                     std::to_string(port), "--trigger-token-file", "token.txt"},
-                    options);
+    const auto outcome = run_program({"start", "slope.toml", "--no-browser", "--json", "--folder", "data", "--port",
+                                      std::to_string(port), "--trigger-token-file", "token.txt"},
+                                     options);
     EXPECT_EQ(started.status, 200) << started.body;
     EXPECT_EQ(outcome.exit_code, 0) << outcome.error;
     EXPECT_THAT(outcome.error, HasSubstr("started by trigger \"slope\""));
-    const auto wrong = run_program({"start", "--no-browser", "--webhook-file", "nothing.txt"}, {.folder = scene.folder()});
+    const auto wrong =
+        run_program({"start", "--no-browser", "--webhook-file", "nothing.txt"}, {.folder = scene.folder()});
     EXPECT_EQ(wrong.exit_code, 2);
     EXPECT_THAT(wrong.error, HasSubstr("--webhook-file nothing.txt: no such file"));
 }

@@ -1,7 +1,9 @@
 #pragma once
 
+#include <atomic>
 #include <chrono>
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <string>
 #include <thread>
@@ -36,7 +38,7 @@ class StartPage : public ::testing::Test {
         options.export_folder = scene_.folder() / "exports";
         auto server = serve::Server::listen(std::move(options));
         ASSERT_TRUE(server) << server.error().message;
-        (*server)->start({folder(), file, [this] { quit_ = true; }, limits_, program_});
+        (*server)->start({folder(), file, on_quit_, limits_, program_});
         server_ = std::move(*server);
     }
     [[nodiscard]] std::filesystem::path folder() const { return scene_.folder() / "data"; }
@@ -60,9 +62,10 @@ class StartPage : public ::testing::Test {
     Answer act(const nlohmann::json& action) { return hand().post("/api/scenarios/A/actions", action); }
 
     SmallScene scene_;
-    bool quit_ = false;
+    std::atomic<bool> quit_ = false;
+    std::function<void()> on_quit_ = [this] { quit_ = true; };
     serve::UploadLimits limits_;
-    serve::AlertSettings alerts_;  ///< triggers and alarms
+    serve::AlertSettings alerts_;    ///< triggers and alarms
     std::filesystem::path program_;  ///< for jobs
     std::unique_ptr<serve::Server> server_;
 };

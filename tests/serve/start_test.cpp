@@ -144,7 +144,13 @@ TEST_F(StartPage, a_session_file_from_a_browser_opens_only_a_known_scene) {
     EXPECT_EQ(hand().post("/api/sessions", {{"name", "../.."}}).status, 400);
 }
 
-TEST_F(StartPage, a_file_of_the_command_line_opens_at_once_and_quit_is_told) {
+TEST_F(StartPage, a_file_of_the_command_line_opens_at_once_and_who_ends_the_program_has_the_answer_first) {
+    std::atomic<bool> answered = false;
+    on_quit_ = [&] {
+        for (int i = 0; i < 200 && !answered; ++i) std::this_thread::sleep_for(std::chrono::milliseconds(25));
+        quit_ = answered.load();
+        answered = true;
+    };
     start(scene_.scene_file());
     json now = page();
     for (int i = 0; i < 400 && now["open"].is_null(); ++i) {
@@ -155,6 +161,8 @@ TEST_F(StartPage, a_file_of_the_command_line_opens_at_once_and_quit_is_told) {
     EXPECT_EQ(hand().ask("DELETE", "/api/recent/" + id()).status, 200);
     EXPECT_EQ(page()["scenes"][0]["kind"], "builtin");
     EXPECT_EQ(hand().ask("POST", "/api/quit").status, 200);
+    answered = true;
+    server_.reset();  // on_quit has come to its end
     EXPECT_TRUE(quit_);
 }
 
