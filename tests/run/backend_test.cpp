@@ -134,13 +134,13 @@ std::string bits_of(const observe::TimeSample& s) {
                     s.volume_left, s.largest_speed, s.mean_compression});
 }
 
-/// What of a scene the observers look at: a net in the valley, a dam that breaks below it, a gauge, debris that waits.
+/// What of a scene the observers look at: a net in the valley, a dam above it that breaks, a gauge, debris that waits.
 const char* const watched_scene =
     "[solver]\nbackend = \"host\"\ntarget_particle_count = 1000\n[outputs]\nsample_interval_s = 0.3\n"
     "[[release]]\nname = \"later\"\nfile = \"later.geojson\"\nthickness_m = 1\nstart_time_s = 2\n"
     "[[barrier]]\nname = \"net\"\nline_m = [[824060, 825085], [824060, 825115]]\nheight_m = 2\npassing_share = 0.5\n"
-    "[[barrier]]\nname = \"dam\"\nline_m = [[824068, 825080], [824068, 825120]]\nheight_m = 1.5\n"
-    "resistance_Npm = 2000\n"
+    "[[barrier]]\nname = \"dam\"\nline_m = [[824054, 825080], [824054, 825120]]\nheight_m = 1.5\n"
+    "resistance_Npm = 1000\n"
     "[[gauge]]\nname = \"bridge\"\nx_m = 824064\ny_m = 825100\n";
 
 TEST_F(WholeRun, OnADeviceObserversMeasureWhatTheyMeasureOnCopies) {
@@ -154,7 +154,7 @@ TEST_F(WholeRun, OnADeviceObserversMeasureWhatTheyMeasureOnCopies) {
         ASSERT_TRUE(scene) << scene.error().message;
         Watched device(*scene), copies(*scene);
         OnCopies on_copies(copies.observer);
-        while (device.simulation.summary().time < 4.5) {
+        while (device.simulation.summary().time < 6) {
             ASSERT_TRUE(device.simulation.advance(&device.observer));
             ASSERT_TRUE(copies.simulation.advance(&on_copies));
         }
