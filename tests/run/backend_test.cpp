@@ -88,6 +88,16 @@ struct Watched {
         return observer.finish(simulation.model(), simulation.ground(), simulation.state());
     }
 
+    /// As a user who drags all debris down the valley.
+    void shift() {
+        simulation.change([](sim::Model&, sim::Ground&, sim::State& state) {
+            for (std::uint32_t i = 0; i < state.count; ++i) {
+                state.position.set(i, state.position.at(i) + LocalPoint{40, 0, -20});
+            }
+        });
+        observer.follow(simulation.model(), simulation.ground(), simulation.state(), simulation.state().seeded);
+    }
+
     static sim::Simulation simulation_of(const scene::Scene& scene) {
         sim::Model model =
             sim::make_model(scene.spec.material, scene.spec.solver, scene::particle_spacing(scene), scene.cover);
@@ -136,7 +146,7 @@ std::string bits_of(const observe::TimeSample& s) {
 
 /// What of a scene the observers look at: a net in the valley, a dam above it that breaks, a gauge, debris that waits.
 const char* const watched_scene =
-    "[solver]\nbackend = \"host\"\ntarget_particle_count = 1000\n[outputs]\nsample_interval_s = 0.3\n"
+    "[solver]\nbackend = \"host\"\ntarget_particle_count = 800\n[outputs]\nsample_interval_s = 0.3\n"
     "[[release]]\nname = \"later\"\nfile = \"later.geojson\"\nthickness_m = 1\nstart_time_s = 2\n"
     "[[barrier]]\nname = \"net\"\nline_m = [[824060, 825085], [824060, 825115]]\nheight_m = 2\npassing_share = 0.5\n"
     "[[barrier]]\nname = \"dam\"\nline_m = [[824054, 825080], [824054, 825120]]\nheight_m = 1.5\n"
@@ -154,10 +164,16 @@ TEST_F(WholeRun, OnADeviceObserversMeasureWhatTheyMeasureOnCopies) {
         ASSERT_TRUE(scene) << scene.error().message;
         Watched device(*scene), copies(*scene);
         OnCopies on_copies(copies.observer);
-        while (device.simulation.summary().time < 6) {
-            ASSERT_TRUE(device.simulation.advance(&device.observer));
-            ASSERT_TRUE(copies.simulation.advance(&on_copies));
-        }
+        const auto advance_to = [&](double time) {
+            while (device.simulation.summary().time < time) {
+                ASSERT_TRUE(device.simulation.advance(&device.observer));
+                ASSERT_TRUE(copies.simulation.advance(&on_copies));
+            }
+        };
+        advance_to(6);
+        device.shift();
+        copies.shift();
+        advance_to(6.1);
         ASSERT_EQ(hash_state(device.simulation.state()), hash_state(copies.simulation.state()));
 
         const auto a = device.observer.maps().present(), b = copies.observer.maps().present();
