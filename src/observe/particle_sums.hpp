@@ -47,7 +47,7 @@ struct PathParticle {
 struct ChainageBeyond {
     terrain::PathField path;
     PlanPoint origin;  ///< of local positions
-    double from;
+    double from = 0;
 
     [[nodiscard]] TALUS_DEVICE float of(float x, float y) const {
         const PlanPoint p{origin.x + static_cast<double>(x), origin.y + static_cast<double>(y)};
@@ -62,13 +62,13 @@ struct ChainageBeyond {
 /// A particle near a wall.
 struct WallParticle {
     LocalPoint position, velocity;
-    double density;  ///< kg/m3
+    double density = 0;  ///< kg/m3
 };
 
 /// A particle and where it is.
 struct PlacedParticle {
     LocalPoint position;
-    std::uint32_t id;
+    std::uint32_t id = 0;
 };
 
 /// A local plan rectangle.
