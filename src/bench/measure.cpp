@@ -52,7 +52,7 @@ Result<int> take_steps(run::Run& run, int steps, const std::atomic<bool>* stop_r
     for (int i = 0; i < steps; ++i) {
         if (stop_requested && stop_requested->load()) return Error{"stopped by the user"};
         if (!run.advance()) return Error{run.stop_reason()};
-        iterations += run.state().iterations;
+        iterations += run.summary().iterations;
     }
     return iterations;
 }
@@ -66,7 +66,7 @@ struct Repeats {
 Status run_repeats(run::Run& run, Row& row, Calibration& calibration, const std::atomic<bool>* stop_requested) {
     const sim::Simulation& simulation = run.simulation();
     Repeats repeats;
-    const double start_time = simulation.state().time;
+    const double start_time = simulation.summary().time;
     (void)calibration.measure();  // wakes the threads
     double rate_before = calibration.measure();
     for (int repeat = 0; repeat < row.repeats; ++repeat) {
@@ -93,7 +93,7 @@ Status run_repeats(run::Run& run, Row& row, Calibration& calibration, const std:
     for (std::size_t stage = 0; stage < sim::stage_count; ++stage) {
         row.stage_seconds[stage] = median(repeats.stage_seconds[stage]);
     }
-    row.time_step = (simulation.state().time - start_time) / (row.steps * row.repeats);
+    row.time_step = (simulation.summary().time - start_time) / (row.steps * row.repeats);
     return {};
 }
 

@@ -106,7 +106,7 @@ void ImpactRecorder::drop_slots(std::size_t building) {
     record.first_slot = no_slot;
 }
 
-void ImpactRecorder::add_contact(const sim::Model& model, const sim::State& state,
+void ImpactRecorder::add_contact(const sim::Model& model, const sim::StateSummary& state,
                                  const sim::BuildingContact& contact) {
     const auto building = static_cast<std::size_t>(contact.building);
     BuildingImpact& impact = impacts_[building];
@@ -136,9 +136,9 @@ double ImpactRecorder::highest_pressure(const Record& record) const {
     return highest;
 }
 
-void ImpactRecorder::take_approach(const sim::Model& model, const sim::Ground& ground, const sim::State& state) {
+void ImpactRecorder::take_approach(const sim::Model& model, const sim::Ground& ground, const Debris& debris) {
     for (Record& record : records_) record.depth = record.dynamic_pressure = 0;
-    approach_.update(model, state, patches_);
+    approach_.update(model, debris, patches_);
     for (const WallApproach::Flow& flow : approach_.flows()) {
         const auto building = static_cast<std::size_t>(flow.building);
         if (!stands(ground.buildings[building])) continue;
@@ -172,7 +172,7 @@ void ImpactRecorder::take_pressures() {
     }
 }
 
-void ImpactRecorder::update_peaks(const sim::Ground& ground, std::size_t building, const sim::State& state) {
+void ImpactRecorder::update_peaks(const sim::Ground& ground, std::size_t building, const sim::StateSummary& state) {
     const Record& record = records_[building];
     const double force = force_on(record), pressure = record.pressure;
     BuildingImpact& impact = impacts_[building];
@@ -197,13 +197,14 @@ void ImpactRecorder::take_overtopping(std::size_t building) {
     impact.passed_volume = crossings->passed_volume();
 }
 
-void ImpactRecorder::after_step(const sim::Model& model, const sim::Ground& ground, const sim::State& state) {
+void ImpactRecorder::after_step(const sim::Model& model, const sim::Ground& ground, const Debris& debris) {
+    const sim::StateSummary& state = debris.summary();
     touched_.clear();
     failed_.clear();
     if (impacts_.empty()) return;
     for (const sim::BuildingContact& contact : state.building_contacts) add_contact(model, state, contact);
     sums_.advance(state.time, state.time_step);
-    take_approach(model, ground, state);
+    take_approach(model, ground, debris);
     take_pressures();
     // Where nothing arrives, filtered forces only decrease: nothing to do for the other buildings.
     for (const std::size_t building : touched_) {
@@ -212,21 +213,21 @@ void ImpactRecorder::after_step(const sim::Model& model, const sim::Ground& grou
     }
     for (std::size_t b = 0; b < crossings_.size(); ++b) {
         if (!crossings_[b]) continue;
-        crossings_[b]->after_step(state, jumped_);
+        crossings_[b]->after_step(debris, jumped_);
         take_overtopping(b);
     }
     jumped_ = false;
     for (const std::size_t building : failed_) {
-        if (crossings_[building]) impacts_[building].held_volume = crossings_[building]->filling(state).volume;
+        if (crossings_[building]) impacts_[building].held_volume = crossings_[building]->filling(debris).volume;
         crossings_[building].reset();  // debris that passes from now on does not overtop it
     }
 }
 
-void ImpactRecorder::add_row(const sim::State& state) {
+void ImpactRecorder::add_row(const Debris& debris) {
     for (std::size_t b = 0; b < impacts_.size(); ++b) {
         BuildingImpact& impact = impacts_[b];
         if (!impact.hit) continue;
-        StructureSample sample{.time = state.time,
+        StructureSample sample{.time = debris.summary().time,
                                .force = force_on(records_[b]),
                                .impact_pressure = highest_pressure(records_[b]),
                                .depth = records_[b].depth,
@@ -235,7 +236,7 @@ void ImpactRecorder::add_row(const sim::State& state) {
                                .overtopped_volume = impact.overtopped_volume,
                                .passed_volume = impact.passed_volume};
         if (crossings_[b]) {
-            const Overtopping::Filling filling = crossings_[b]->filling(state);
+            const Overtopping::Filling filling = crossings_[b]->filling(debris);
             sample.held_volume = impact.held_volume = filling.volume;
             sample.filling_height = filling.height;
             impact.peak_held_volume = std::max(impact.peak_held_volume, filling.volume);
@@ -245,10 +246,10 @@ void ImpactRecorder::add_row(const sim::State& state) {
     }
 }
 
-std::vector<BuildingImpact> ImpactRecorder::complete(const sim::State& state) const {
+std::vector<BuildingImpact> ImpactRecorder::complete(const Debris& debris) const {
     std::vector<BuildingImpact> impacts = impacts_;
     for (std::size_t b = 0; b < impacts.size(); ++b) {
-        if (crossings_[b]) impacts[b].held_volume = crossings_[b]->filling(state).volume;
+        if (crossings_[b]) impacts[b].held_volume = crossings_[b]->filling(debris).volume;
     }
     return impacts;
 }

@@ -4,6 +4,7 @@
 #include <memory>
 #include <vector>
 
+#include "observe/debris.hpp"
 #include "observe/moving_sums.hpp"
 #include "observe/observation.hpp"
 #include "observe/overtopping.hpp"
@@ -41,15 +42,15 @@ class ImpactRecorder {
     /// Resets a building's record, for example after it was moved.
     void forget(const sim::Model& model, const sim::Ground& ground, const sim::State& state, std::size_t building);
 
-    void after_step(const sim::Model& model, const sim::Ground& ground, const sim::State& state);
+    void after_step(const sim::Model& model, const sim::Ground& ground, const Debris& debris);
 
     /// Adds a sample to the history of every structure that has been hit.
-    void add_row(const sim::State& state);
+    void add_row(const Debris& debris);
 
     /// Without the values that complete() fills in.
     [[nodiscard]] const std::vector<BuildingImpact>& impacts() const { return impacts_; }
     /// Including the debris that barriers hold back now.
-    [[nodiscard]] std::vector<BuildingImpact> complete(const sim::State& state) const;
+    [[nodiscard]] std::vector<BuildingImpact> complete(const Debris& debris) const;
     /// Buildings whose resistance was exceeded in the last step.
     [[nodiscard]] const std::vector<std::size_t>& failed() const { return failed_; }
     /// nullptr: not a barrier, or a failed one.
@@ -66,13 +67,13 @@ class ImpactRecorder {
         double peak_depth = 0, peak_dynamic_pressure = 0, peak_speed = 0;  // so far, hit or not
     };
 
-    void add_contact(const sim::Model& model, const sim::State& state, const sim::BuildingContact& contact);
+    void add_contact(const sim::Model& model, const sim::StateSummary& state, const sim::BuildingContact& contact);
     void give_slots(std::size_t building);
     void drop_slots(std::size_t building);
-    void take_approach(const sim::Model& model, const sim::Ground& ground, const sim::State& state);
+    void take_approach(const sim::Model& model, const sim::Ground& ground, const Debris& debris);
     /// The highest pressure on every building at whose walls something arrived in this step.
     void take_pressures();
-    void update_peaks(const sim::Ground& ground, std::size_t building, const sim::State& state);
+    void update_peaks(const sim::Ground& ground, std::size_t building, const sim::StateSummary& state);
     /// Now, of the patch where it is highest, Pa.
     [[nodiscard]] double highest_pressure(const Record& record) const;
     [[nodiscard]] double force_on(const Record& record) const;  // N

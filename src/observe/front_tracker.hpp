@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include "observe/debris.hpp"
 #include "observe/observation.hpp"
 #include "sim/ground.hpp"
 #include "sim/model.hpp"
@@ -15,7 +16,7 @@ namespace talus::observe {
 
 /// Particles that have to lie beyond a position for it to count as reached: 5, or 0.1 % of the released volume if that
 /// is more, so that a single stray particle is not a front.
-[[nodiscard]] std::uint32_t front_particle_count(const sim::State& state);
+[[nodiscard]] std::uint32_t front_particle_count(const sim::StateSummary& state);
 
 /// Upper limit of the front velocity relative to the fastest debris at the front: on the inside of a bend chainage
 /// grows faster than the distance travelled, by half at a third of the bend radius from the path.
@@ -57,11 +58,11 @@ class FrontTracker {
     FrontTracker(const sim::Model& model, const sim::Ground& ground, const sim::State& state,
                  terrain::FlowPath flow_path, double chainage_interval, double velocity_window);
 
-    void after_step(const sim::Ground& ground, const sim::State& state);
+    void after_step(const sim::Ground& ground, const Debris& debris);
     /// Call when the state was changed between two steps.
     void follow(const sim::State& state);
     /// Reserves memory for this number of particles.
-    void expect(std::uint32_t particles) { candidates_.reserve(particles); }
+    void expect(std::uint32_t particles) { candidates_.found.reserve(particles); }
 
     [[nodiscard]] const terrain::FlowPath& flow_path() const { return flow_path_; }
     /// Chainage of the front now, m; NaN: none on the path.
@@ -72,24 +73,16 @@ class FrontTracker {
     [[nodiscard]] std::vector<FrontSample> samples() const { return record_.samples(); }
 
   private:
-    /// A particle on the path, not far behind the front.
-    struct Candidate {
-        std::uint32_t particle;
-        float chainage;
-    };
+    /// Sets current_ and the candidates.
+    void find_front(const sim::Ground& ground, const Debris& debris);
+    [[nodiscard]] FrontRecord::Head head_behind(double front);
 
-    /// Finds the candidates beyond `from` and returns how many particles are held.
-    std::uint32_t find_candidates(const sim::Ground& ground, const sim::State& state, double from);
-    /// Sets current_ and returns how many particles are held.
-    std::uint32_t find_front(const sim::Ground& ground, const sim::State& state);
-    [[nodiscard]] FrontRecord::Head head_behind(double front, const sim::State& state);
     terrain::FlowPath flow_path_;
     double head_length_ = 0;
     std::size_t front_count_ = 1;
     std::uint32_t held_ = 0;
     double current_ = never, farthest_ = never;
-    std::vector<Candidate> candidates_;  // the first candidate_count_, in any order
-    std::uint32_t candidate_count_ = 0;
+    Debris::OnPath candidates_;  // not far behind the front
     FrontRecord record_;
 };
 

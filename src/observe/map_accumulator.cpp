@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <atomic>
-#include <cmath>
 #include <cstring>
 #include <limits>
 #include <mutex>
@@ -14,35 +13,22 @@
 namespace talus::observe {
 namespace {
 
-constexpr float one = 1 << 12;  ///< a weight of 1 along one axis
-static_assert(one * one == map_units::particle);
-constexpr float fastest = 1000;      ///< m/s; with up to 500 particles per cell, even of a faulty state, the sums are
-                                     ///< exact
 constexpr std::size_t grain = 2048;  ///< particles per task
 
 using L = simd::Lanes<4>;
 constexpr std::size_t chunk = 16;  ///< particles whose shares are computed at once
 static_assert(chunk <= sim::array_padding);
 
-/// Whole-number weights of the cells before, at and after the particles' along one axis: a quadratic B-spline. Shares
-/// beyond the map's edge stay in its outermost cell.
+/// The shares of a chunk along one axis.
 struct AxisShares {
     std::array<std::int32_t, chunk> cell;
     std::array<std::array<float, chunk>, 3> weight;
 
-    /// `u`: in cells from the map's corner.
-    void set(std::size_t at, const L& u, int cells) {
-        const L last_cell(cells - 1), inside = larger(L(0), smaller(L(cells), u));
-        const auto whole = truncated(smaller(last_cell, inside));
-        const L here = from_index<L>(whole);
-        const L low = inside - here, high = L(1) - low;  // shares of the cell on either side
-        const L half(one / 2);
-        const L after = select(here < last_cell, from_index<L>(truncated(half * low * low)), L(0));
-        const L before = select(here > L(0), from_index<L>(truncated(half * high * high)), L(0));
-        std::memcpy(cell.data() + at, &whole.v, sizeof whole.v);
-        before.store(weight[0].data() + at);
-        (L(one) - before - after).store(weight[1].data() + at);
-        after.store(weight[2].data() + at);
+    void set(std::size_t at, const AxisShare<L, decltype(truncated(L(0)))>& share) {
+        std::memcpy(cell.data() + at, &share.cell.v, sizeof share.cell.v);
+        share.before.store(weight[0].data() + at);
+        share.at.store(weight[1].data() + at);
+        share.after.store(weight[2].data() + at);
     }
 };
 
@@ -50,20 +36,19 @@ struct AxisShares {
 
 MapAccumulator::MapAccumulator(const sim::Model& model, const sim::Ground& ground, const sim::State& state,
                                double map_cell, double arrival_depth)
-    : inverse_cell_(1 / map_cell),
-      particle_volume_(model.particle_volume()),
-      rest_density_(model.rest_density),
-      arrival_depth_(arrival_depth) {
+    : inverse_cell_(1 / map_cell), particle_volume_(model.particle_volume()) {
     const Extent extent = ground.terrain.elevation().geometry.extent();
     const auto cells = [&](double length) {
         return std::max(1, static_cast<int>(std::ceil(length / map_cell - 1e-6)));
     };
     geometry_ = {extent.x_min, extent.y_min, map_cell, cells(extent.width()), cells(extent.height())};
     const WorldPoint& origin = ground.terrain.frame().origin;
-    x_offset_ = origin.x - geometry_.x_min;
-    y_offset_ = origin.y - geometry_.y_min;
-    depth_of_unit_ = particle_volume_ / map_units::particle / (map_cell * map_cell);
-    thinnest_depth_ = 0.1 * model.particle_spacing;
+    frame_ = {static_cast<float>(origin.x - geometry_.x_min), static_cast<float>(origin.y - geometry_.y_min),
+              static_cast<float>(inverse_cell_), geometry_.columns, geometry_.rows};
+    scale_.depth_of_unit = particle_volume_ / map_units::particle / (map_cell * map_cell);
+    scale_.thinnest_depth = 0.1 * model.particle_spacing;
+    scale_.arrival_depth = arrival_depth;
+    scale_.rest_density = model.rest_density;
 
     // Tiles also hold the cells just outside the map's edge, which never receive a share, so that every particle has
     // nine cells.
@@ -121,24 +106,21 @@ class MapAccumulator::Patches {
 };
 
 void MapAccumulator::find_shares(const sim::State& state, std::size_t first, bool densities, Shares& shares) const {
-    const L x_offset(x_offset_), y_offset(y_offset_), inverse_cell(inverse_cell_);
     for (std::size_t k = 0; k < chunk; k += L::size) {
         const std::size_t i = first + k;
         const L x = L::load(&state.position.x[i]), y = L::load(&state.position.y[i]);
-        shares.x.set(k, (x + x_offset) * inverse_cell, geometry_.columns);
-        shares.y.set(k, (y + y_offset) * inverse_cell, geometry_.rows);
+        shares.x.set(k, axis_share(x, frame_.x_offset, frame_.inverse_cell, frame_.columns));
+        shares.y.set(k, axis_share(y, frame_.y_offset, frame_.inverse_cell, frame_.rows));
         select((x - x == L(0)) & (y - y == L(0)), L(1), L(0)).store(&shares.known[k]);
         const L vx = L::load(&state.velocity.x[i]), vy = L::load(&state.velocity.y[i]),
                 vz = L::load(&state.velocity.z[i]);
-        const L speed = sqrt(vx * vx + vy * vy + vz * vz);
-        const L limited = select(speed < L(fastest), speed, L(fastest));
-        from_index<L>(truncated(limited * L(map_units::speed) + L(0.5))).store(&shares.speed[k]);
+        whole_speed(vx, vy, vz).store(&shares.speed[k]);
     }
     if (!densities) return;
     for (std::size_t k = 0; k < chunk; ++k) {
         const std::uint32_t id = first + k < state.count ? state.id[first + k] : 0;
         const float own = id < state.density_of_id.size() ? state.density_of_id[id] : 0;
-        shares.speed[k] = std::round(own > 0 ? own : static_cast<float>(rest_density_));
+        shares.speed[k] = whole_density(own, scale_.rest_density);
     }
 }
 
@@ -169,7 +151,7 @@ void MapAccumulator::spread(const sim::State& state, bool densities, std::size_t
     patches.take_all();
 }
 
-MapAccumulator::Tile& MapAccumulator::tile_at(unsigned tile_column, unsigned tile_row) {
+MapAccumulator::Tile& MapAccumulator::tile_at(unsigned tile_column, unsigned tile_row) const {
     const std::size_t position = std::size_t{tile_row} * tile_columns_ + tile_column;
     const std::atomic_ref<Tile*> tile(tile_at_[position]);
     if (Tile* found = tile.load(std::memory_order_acquire)) return *found;
@@ -220,48 +202,34 @@ void MapAccumulator::make_room(std::size_t particles) {
 
 void MapAccumulator::follow(const sim::Model& model, const sim::State& state) {
     make_room(state.count);
-    if (model.rest_density == rest_density_) return;
+    if (model.rest_density == scale_.rest_density) return;
+    read_back();
+    device_is_older_ = true;
     keep_pressures();
-    rest_density_ = model.rest_density;
+    scale_.rest_density = model.rest_density;
 }
 
 void MapAccumulator::keep_pressures() {
-    if (!density_changed_) {
+    if (!scale_.keeps_pressures) {
         for (const auto& tile : tiles_) {
             for (std::size_t cell = 0; cell < tile_cells; ++cell)
                 tile->peak_pressure[cell] = peak_pressure(*tile, cell);
         }
     }
-    density_changed_ = true;
+    scale_.keeps_pressures = true;
 }
 
 float MapAccumulator::peak_pressure(const Tile& tile, std::size_t cell) const {
-    if (density_changed_) return tile.peak_pressure[cell];
+    if (scale_.keeps_pressures) return tile.peak_pressure[cell];
     const double speed = tile.peak_speed[cell];
-    return static_cast<float>(rest_density_ * speed * speed);
+    return static_cast<float>(scale_.rest_density * speed * speed);
 }
 
 void MapAccumulator::update_peaks(Tile& tile, double time) const {
     for (std::size_t cell = 0; cell < tile_cells; ++cell) {
-        const CellSum& sum = tile.sums[cell];
-        const double now = depth(sum.volume());
-        if (now < thinnest_depth_) continue;
-        if (sum.momentum() > sum.volume() * tile.peak_speed[cell] * map_units::speed) {
-            tile.peak_speed[cell] = static_cast<float>(sum.momentum() / sum.volume() / map_units::speed);
-        }
-        if (density_changed_) {
-            const double speed = sum.momentum() / sum.volume() / map_units::speed;
-            const auto pressure = static_cast<float>(density_in(tile, cell) * speed * speed);
-            tile.peak_pressure[cell] = std::max(tile.peak_pressure[cell], pressure);
-        }
-        // Debris arrives with a depth that the cell never had before.
-        if (now > tile.peak_depth[cell]) {
-            tile.peak_depth[cell] = static_cast<float>(now);
-            if (now > arrival_depth_ && std::isnan(tile.arrival_time[cell])) {
-                tile.arrival_time[cell] = static_cast<float>(time);
-                tile.arrival_speed[cell] = static_cast<float>(sum.momentum() / sum.volume() / map_units::speed);
-            }
-        }
+        update_cell(scale_, tile.sums[cell].sum(), density_in(tile, cell), time,
+                    {tile.peak_depth[cell], tile.peak_speed[cell], tile.arrival_time[cell], tile.arrival_speed[cell],
+                     tile.peak_pressure[cell]});
     }
 }
 
@@ -280,15 +248,15 @@ void MapAccumulator::take_densities(const sim::State& state) {
             Tile& tile = *active_[k];
             tile.density.resize(tile_cells);
             for (std::size_t cell = 0; cell < tile_cells; ++cell) {
-                const CellSum& sum = tile.sums[cell];
-                const double mean = sum.volume() > 0 ? sum.momentum() / sum.volume() : rest_density_;
-                tile.density[cell] = static_cast<float>(mean);
+                tile.density[cell] = tile.sums[cell].sum().density(scale_);
             }
         }
     });
 }
 
 void MapAccumulator::add(const sim::State& state) {
+    read_back();
+    device_is_older_ = true;
     make_room(state.count);
     if (!state.density_of_id.empty()) take_densities(state);
     spread_all(state, false);

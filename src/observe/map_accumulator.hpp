@@ -9,10 +9,15 @@
 #include <tbb/spin_mutex.h>
 
 #include "core/grid.hpp"
+#include "observe/map_shares.hpp"
 #include "observe/observation.hpp"
 #include "sim/ground.hpp"
 #include "sim/model.hpp"
 #include "sim/state.hpp"
+
+namespace talus::observe::device {
+class Maps;
+}
 
 namespace talus::observe {
 
@@ -38,6 +43,9 @@ class MapAccumulator {
 
     /// Updates the peaks with the current state. Particles of releases that have not started do not count.
     void add(const sim::State& state);
+    /// The same where a device has the particles; their maps are then on it too, until somebody reads them here. It
+    /// must live as long as the maps.
+    void add(device::Maps& device, const sim::StateSummary& state);
 
     /// Volume on the map at the last `add`, m3: exactly the particles added.
     [[nodiscard]] double volume() const;
@@ -61,11 +69,11 @@ class MapAccumulator {
 
     /// Debris thinner than this does not count as having reached a cell, m: a tenth of a layer of particles. Without
     /// it, the edge of a single particle's share would set the peak speed of cells that the particle never entered.
-    [[nodiscard]] double thinnest_depth() const { return thinnest_depth_; }
+    [[nodiscard]] double thinnest_depth() const { return scale_.thinnest_depth; }
 
   private:
-    static constexpr unsigned tile_size = 8;  // cells along an edge
-    static constexpr std::size_t tile_cells = std::size_t{tile_size} * tile_size;
+    static constexpr unsigned tile_size = map_tile_size;
+    static constexpr std::size_t tile_cells = map_tile_cells;
     static constexpr int column_of(std::size_t cell_in_tile) { return static_cast<int>(cell_in_tile % tile_size); }
     static constexpr int row_of(std::size_t cell_in_tile) { return static_cast<int>(cell_in_tile / tile_size); }
 
@@ -73,8 +81,8 @@ class MapAccumulator {
     struct CellSum {
         using Pair = double __attribute__((vector_size(16)));
         Pair pair{};
-        [[nodiscard]] double volume() const { return pair[0]; }    // 2^-24 of a particle
-        [[nodiscard]] double momentum() const { return pair[1]; }  // the same times 2^-10 m/s
+        [[nodiscard]] double volume() const { return pair[0]; }  // 2^-24 of a particle
+        [[nodiscard]] MapSum sum() const { return {pair[0], pair[1]}; }
     };
     struct Tile {
         int column = 0, row = 0;  // of its first cell
@@ -99,7 +107,7 @@ class MapAccumulator {
     /// Stores peak pressures from now on, as they no longer follow from peak speeds.
     void keep_pressures();
     [[nodiscard]] double density_in(const Tile& tile, std::size_t cell) const {
-        return tile.density.empty() ? rest_density_ : static_cast<double>(tile.density[cell]);
+        return tile.density.empty() ? scale_.rest_density : static_cast<double>(tile.density[cell]);
     }
     /// The shares of the next particles and their cells.
     void find_shares(const sim::State& state, std::size_t first, bool densities, Shares& shares) const;
@@ -108,28 +116,37 @@ class MapAccumulator {
     /// Moves the sums of a patch into the tiles that it lies over.
     void take(Patch& patch);
     /// Created if it does not exist yet.
-    Tile& tile_at(unsigned tile_column, unsigned tile_row);
+    Tile& tile_at(unsigned tile_column, unsigned tile_row) const;
     void update_peaks(Tile& tile, double time) const;
+    /// Takes the tiles back from the device, if it has newer ones. What a lost device had is lost.
+    void read_back() const;
+    void send_tiles();
     [[nodiscard]] float peak_pressure(const Tile& tile, std::size_t cell) const;
     /// At the last add.
     [[nodiscard]] CellSum sum_of(const Tile& tile, std::size_t cell) const;
-    [[nodiscard]] double depth(double volume) const { return volume * depth_of_unit_; }
+    [[nodiscard]] MapSum sum_at(std::size_t position, std::size_t cell) const;
+    [[nodiscard]] double depth(double volume) const { return volume * scale_.depth_of_unit; }
     [[nodiscard]] Extent reached_cells() const;
 
     GridGeometry geometry_;  // of the whole terrain
-    double x_offset_ = 0, y_offset_ = 0, inverse_cell_ = 0;
-    double particle_volume_ = 0, rest_density_ = 0;
-    bool density_changed_ = false;
-    double depth_of_unit_ = 0, thinnest_depth_ = 0, arrival_depth_ = 0;
+    double inverse_cell_ = 0, particle_volume_ = 0;
+    MapFrame frame_;
+    MapScale scale_;
 
     unsigned tile_columns_ = 0;
-    std::vector<Tile*> tile_at_;  // by tile position; null: not reached yet
-    std::vector<std::unique_ptr<Tile>> tiles_;
-    std::mutex new_tile_;
-    std::uint64_t adds_ = 0;     // so far
-    std::vector<Tile*> active_;  // reached by the last add, the first active_count_
-    std::uint32_t active_count_ = 0;
+    // What is read back changes them.
+    mutable std::vector<Tile*> tile_at_;  // by tile position; null: not reached yet
+    mutable std::vector<std::unique_ptr<Tile>> tiles_;
+    mutable std::mutex new_tile_;
+    mutable std::uint64_t adds_ = 0;     // so far
+    mutable std::vector<Tile*> active_;  // reached by the last add, the first active_count_
+    mutable std::uint32_t active_count_ = 0;
     PlanPoint first_particle_;  // world, for the frame of an empty map
+
+    device::Maps* device_ = nullptr;
+    mutable std::mutex reading_;            // several threads may read between two steps
+    mutable bool device_is_newer_ = false;  // than the tiles
+    bool device_is_older_ = true;
 };
 
 }  // namespace talus::observe

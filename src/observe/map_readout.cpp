@@ -13,6 +13,7 @@ MapAccumulator::CellSum MapAccumulator::sum_of(const Tile& tile, std::size_t cel
 }
 
 double MapAccumulator::volume() const {
+    read_back();
     double sum = 0;
     for (const auto& tile : tiles_) {
         for (std::size_t cell = 0; cell < tile_cells; ++cell) sum += sum_of(*tile, cell).volume();
@@ -26,17 +27,16 @@ FlowAt MapAccumulator::at(const PlanPoint& place) const {
     if (!(column >= 0 && row >= 0 && column < geometry_.columns && row < geometry_.rows)) return {};
     const auto c = static_cast<unsigned>(column) + 1,
                r = static_cast<unsigned>(row) + 1;  // tiles begin one cell before
-    const Tile* tile = tile_at_[std::size_t{r / tile_size} * tile_columns_ + c / tile_size];
-    if (tile == nullptr) return {};
-    const CellSum sum = sum_of(*tile, std::size_t{r % tile_size} * tile_size + c % tile_size);
-    FlowAt flow{depth(sum.volume())};
-    if (sum.volume() > 0 && flow.depth >= thinnest_depth_) {
-        flow.speed = sum.momentum() / sum.volume() / map_units::speed;
-    }
+    const std::size_t position = std::size_t{r / tile_size} * tile_columns_ + c / tile_size;
+    const std::size_t cell = std::size_t{r % tile_size} * tile_size + c % tile_size;
+    const MapSum sum = sum_at(position, cell);
+    FlowAt flow{depth(sum.volume)};
+    if (sum.volume > 0 && flow.depth >= scale_.thinnest_depth) flow.speed = sum.speed();
     return flow;
 }
 
 MapAccumulator::Present MapAccumulator::present() const {
+    read_back();
     int first_column = geometry_.columns, first_row = geometry_.rows, last_column = -1, last_row = -1;
     const auto edge = static_cast<int>(tile_size);
     for (std::uint32_t t = 0; t < active_count_; ++t) {
@@ -56,7 +56,7 @@ MapAccumulator::Present MapAccumulator::present() const {
     present.depth = present.speed = Grid<float>(window);
     const bool own_densities =
         std::any_of(tiles_.begin(), tiles_.end(), [](const auto& tile) { return !tile->density.empty(); });
-    if (own_densities) present.density = Grid<float>(window, static_cast<float>(rest_density_));
+    if (own_densities) present.density = Grid<float>(window, static_cast<float>(scale_.rest_density));
     for (std::uint32_t t = 0; t < active_count_; ++t) {
         const Tile& tile = *active_[t];
         for (std::size_t cell = 0; cell < tile_cells; ++cell) {
@@ -66,8 +66,8 @@ MapAccumulator::Present MapAccumulator::present() const {
                 window.index(tile.column + column_of(cell) - first_column, tile.row + row_of(cell) - first_row);
             present.depth.values[k] = static_cast<float>(depth(sum.volume()));
             if (own_densities) present.density.values[k] = static_cast<float>(density_in(tile, cell));
-            if (present.depth.values[k] < thinnest_depth_) continue;
-            present.speed.values[k] = static_cast<float>(sum.momentum() / sum.volume() / map_units::speed);
+            if (present.depth.values[k] < scale_.thinnest_depth) continue;
+            present.speed.values[k] = static_cast<float>(sum.sum().speed());
         }
     }
     return present;
@@ -89,6 +89,7 @@ Extent MapAccumulator::reached_cells() const {
 }
 
 HazardMaps MapAccumulator::maps() const {
+    read_back();
     constexpr double margin = 20;  // m around the reached cells
     const Extent frame = reached_cells().grown(margin);
     const auto cell_at = [&](double x, double x_min, int cells) {

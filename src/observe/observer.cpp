@@ -1,10 +1,11 @@
 #include "observe/observer.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <utility>
 
 #include "observe/building_impact.hpp"
+#include "observe/debris.hpp"
+#include "observe/device/particles.hpp"
 #include "observe/erosion.hpp"
 #include "observe/front_tracker.hpp"
 #include "observe/gauges.hpp"
@@ -12,49 +13,14 @@
 #include "observe/run_out.hpp"
 #include "observe/step_rate.hpp"
 #include "sim/compression.hpp"
-#include "sim/particle_density.hpp"
-#include "simd/parallel.hpp"
 
 namespace talus::observe {
 namespace {
 
-/// Counts and energies over the particles, as far as they are summed for every row.
-struct Totals {
-    std::uint32_t held = 0, moving = 0, deposited = 0;
-    double speed_squared = 0;  ///< sum, m2/s2
-    double height = 0;         ///< sum over the particles, m above the lowest terrain
-};                             ///< both weighed by density over rest density
-
-Totals sum_up(const sim::Model& model, const sim::State& state, double deposited_speed) {
-    const bool own_densities = !state.density_of_id.empty();
-    return simd::reduce_ranges(
-        state.count, 1024, Totals{},
-        [&](std::size_t first, std::size_t last, Totals sum) {
-            for (std::size_t i = first; i < last; ++i) {
-                const LocalPoint v = state.velocity.at(i);
-                const double speed_squared = dot(v, v);
-                const double weight = own_densities ? density_of(model, state, i) / model.rest_density : 1;
-                sum.speed_squared += weight * speed_squared;
-                sum.height += weight * static_cast<double>(state.position.z[i]);
-                if (state.held[i] != 0) {
-                    ++sum.held;
-                } else if (speed_squared < deposited_speed * deposited_speed) {
-                    ++sum.deposited;
-                } else {
-                    ++sum.moving;
-                }
-            }
-            return sum;
-        },
-        [](const Totals& a, const Totals& b) {
-            return Totals{a.held + b.held, a.moving + b.moving, a.deposited + b.deposited,
-                          a.speed_squared + b.speed_squared, a.height + b.height};
-        });
-}
-
-TimeSample make_sample(const sim::Model& model, const sim::State& state, double deposited_speed, double front_chainage,
+TimeSample make_sample(const sim::Model& model, const Debris& debris, double deposited_speed, double front_chainage,
                        double steps_per_second) {
-    const Totals totals = sum_up(model, state, deposited_speed);
+    const sim::StateSummary& state = debris.summary();
+    const ParticleSums totals = debris.sums(model, deposited_speed);
     TimeSample sample;
     sample.time = state.time;
     sample.volume_released = state.released() * model.particle_volume();
@@ -109,7 +75,7 @@ struct Observer::Parts {
         return measure_release(ground, lay);
     }
 
-    void watch_compression(const sim::Model& model, const sim::State& state) {
+    void watch_compression(const sim::Model& model, const sim::StateSummary& state) {
         const auto keep = [&](double value, double& worst, double& time) {
             if (value <= worst) return;
             worst = value;
@@ -124,9 +90,27 @@ struct Observer::Parts {
         ++steps;
     }
 
-    void add_row(const sim::Model& model, const sim::State& state) {
-        timeseries.push_back(make_sample(model, state, outputs.deposited_speed, front.current(), steps_per_second));
-        impact.add_row(state);
+    void add_row(const sim::Model& model, const Debris& debris) {
+        timeseries.push_back(make_sample(model, debris, outputs.deposited_speed, front.current(), steps_per_second));
+        impact.add_row(debris);
+    }
+
+    void after_step(const sim::Model& model, const sim::Ground& ground, const Debris& debris, double rate_now) {
+        debris.add_to(maps);
+        front.after_step(ground, debris);
+        impact.after_step(model, ground, debris);
+        const sim::StateSummary& state = debris.summary();
+        watch_compression(model, state);
+        steps_per_second = rate_now;
+        // Rows at multiples of the interval, or just after one where a step is longer; a millionth of it absorbs
+        // rounding.
+        const double intervals = state.time / outputs.sample_interval + 1e-6;
+        const bool row = intervals >= static_cast<double>(next_row);
+        read_gauges(state.time, row);
+        if (row) {
+            add_row(model, debris);
+            next_row = static_cast<std::uint64_t>(intervals) + 1;
+        }
     }
 
     void read_gauges(double time, bool row) {
@@ -134,6 +118,8 @@ struct Observer::Parts {
     }
 
     params::OutputSpec outputs;
+    const sim::device::Backend* backend = nullptr;  ///< that `on_device` reads
+    std::unique_ptr<device::Particles> on_device;
     MapAccumulator maps;
     GaugeRecorder gauges;
     FrontTracker front;
@@ -163,22 +149,21 @@ void Observer::observe(const sim::Model& model, const sim::Ground& ground, const
     after_step(model, ground, state, parts_->rate.update(state.step));
 }
 
+bool Observer::observe_on(sim::device::Backend& backend, const sim::Model& model, const sim::Ground& ground,
+                          const sim::StateSummary& state) {
+    Parts& p = *parts_;
+    if (p.backend != &backend) {
+        p.on_device = device::make_particles(backend);
+        p.backend = &backend;
+    }
+    if (!p.on_device) return false;
+    p.after_step(model, ground, Debris(*p.on_device, state), p.rate.update(state.step));
+    return true;
+}
+
 void Observer::after_step(const sim::Model& model, const sim::Ground& ground, const sim::State& state,
                           double steps_per_second) {
-    Parts& p = *parts_;
-    p.maps.add(state);
-    p.front.after_step(ground, state);
-    p.impact.after_step(model, ground, state);
-    p.watch_compression(model, state);
-    p.steps_per_second = steps_per_second;
-    // Rows at multiples of the interval, or just after one where a step is longer; a millionth of it absorbs rounding.
-    const double intervals = state.time / p.outputs.sample_interval + 1e-6;
-    const bool row = intervals >= static_cast<double>(p.next_row);
-    p.read_gauges(state.time, row);
-    if (row) {
-        p.add_row(model, state);
-        p.next_row = static_cast<std::uint64_t>(intervals) + 1;
-    }
+    parts_->after_step(model, ground, state, steps_per_second);
 }
 
 void Observer::follow(const sim::Model& model, const sim::Ground& ground, const sim::State& state,
@@ -190,6 +175,7 @@ void Observer::follow(const sim::Model& model, const sim::Ground& ground, const 
     p.maps.add(state);
     p.front.follow(state);
     p.impact.follow(model, ground, state);
+    if (p.on_device) p.on_device->forget_walls();
 }
 
 void Observer::follow_inflow(const sim::State& state, std::uint32_t first_new_id) {
@@ -276,7 +262,7 @@ Observation Observer::finish(const sim::Model& model, const sim::Ground& ground,
     observation.buildings = p.impact.complete(state);
     observation.timeseries = p.timeseries;
     observation.gauges = p.gauges.records();
-    if (p.timeseries.back().time != state.time) observation.timeseries.push_back(sample(model, state));
+    if (p.timeseries.back().time < state.time) observation.timeseries.push_back(sample(model, state));
     observation.erosion = measure_erosion(ground, p.front.flow_path(), p.outputs.chainage_interval);
     observation.volume_released = state.released() * model.particle_volume();
     observation.compression = p.compression;

@@ -28,6 +28,8 @@ class Observer final : public sim::StepWatcher {
 
     /// As a stage of a step: after_step() with the steps per second of wall time.
     void observe(const sim::Model& model, const sim::Ground& ground, const sim::State& state) override;
+    bool observe_on(sim::device::Backend& backend, const sim::Model& model, const sim::Ground& ground,
+                    const sim::StateSummary& state) override;
     void follow_inflow(const sim::State& state, std::uint32_t first_new_id) override;
     [[nodiscard]] const std::vector<std::size_t>& failed_buildings() const override;
 

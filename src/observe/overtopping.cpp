@@ -104,18 +104,19 @@ bool Overtopping::in_mesh(std::uint32_t id, double chainage, double z) const {
     return z < crest_[std::min(static_cast<std::size_t>(std::max(0.0, chainage)), crest_.size() - 1)];
 }
 
-void Overtopping::after_step(const sim::State& state, bool jumped) {
+void Overtopping::after_step(const Debris& debris, bool jumped) {
     if (jumped) {
         for (Track& track : tracks_) track.step = 0;
     }
     ++calls_;
+    const sim::StateSummary& state = debris.summary();
     if (tracks_.size() < state.seeded) tracks_.resize(state.seeded);
-    const auto x_min = static_cast<float>(near_.x_min), x_max = static_cast<float>(near_.x_max);
-    const auto y_min = static_cast<float>(near_.y_min), y_max = static_cast<float>(near_.y_max);
-    for (std::uint32_t i = 0; i < state.count; ++i) {
-        const Point now{state.position.x[i], state.position.y[i]};
-        if (!(now.x >= x_min && now.x <= x_max && now.y >= y_min && now.y <= y_max)) continue;
-        Track& track = tracks_[state.id[i]];
+    const auto rounded = [](double x) { return static_cast<double>(static_cast<float>(x)); };
+    debris.find_inside({rounded(near_.x_min), rounded(near_.y_min), rounded(near_.x_max), rounded(near_.y_max)}, false,
+                       inside_);
+    for (const PlacedParticle& particle : inside_) {
+        const Point now{particle.position.x, particle.position.y};
+        Track& track = tracks_[particle.id];
         const bool known = track.step == calls_;
         const Point before = track.last;
         track.last = now;
@@ -127,8 +128,8 @@ void Overtopping::after_step(const sim::State& state, bool jumped) {
         was.to_right -= track.net > 0;
         was.to_left -= track.net < 0;
         track.net = static_cast<std::int8_t>(std::clamp(track.net + crossed.net, -1, 1));
-        const double z = state.position.z[i];
-        track.through = in_opening(crossed.chainage, z) || in_mesh(state.id[i], crossed.chainage, z);
+        const double z = particle.position.z;
+        track.through = in_opening(crossed.chainage, z) || in_mesh(particle.id, crossed.chainage, z);
         Side& is = track.through ? through_ : over_;
         is.to_right += track.net > 0;
         is.to_left += track.net < 0;
@@ -163,7 +164,7 @@ Overtopping::Place Overtopping::place_of(double x, double y) const {
     return place;
 }
 
-Overtopping::Filling Overtopping::filling(const sim::State& state) const {
+Overtopping::Filling Overtopping::filling(const Debris& debris) const {
     double length = 0;
     for (std::size_t k = 0; k + 1 < line_.size(); ++k) {
         length += std::hypot(static_cast<double>(line_[k + 1].x) - line_[k].x,
@@ -176,10 +177,10 @@ Overtopping::Filling Overtopping::filling(const sim::State& state) const {
     };
     std::array<Beside, 2> sides;  // left, right
     for (Beside& side : sides) side.at_face.resize(sections);
-    const Extent within = near_.grown(reach_);
-    for (std::uint32_t i = 0; i < state.count; ++i) {
-        const double x = state.position.x[i], y = state.position.y[i];
-        if (!within.contains({x, y}) || state.held[i] != 0) continue;
+    std::vector<PlacedParticle> around;
+    debris.find_inside(near_.grown(reach_), true, around);
+    for (const PlacedParticle& particle : around) {
+        const double x = particle.position.x, y = particle.position.y;
         const Place place = place_of(x, y);
         if (place.side == 0) continue;
         Beside& side = sides[place.side > 0 ? 0 : 1];

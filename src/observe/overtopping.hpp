@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "core/geometry.hpp"
+#include "observe/debris.hpp"
 #include "observe/observation.hpp"
 #include "sim/ground.hpp"
 #include "sim/model.hpp"
@@ -23,7 +24,7 @@ class Overtopping {
     void follow(const sim::State& state) { tracks_.resize(std::max<std::size_t>(tracks_.size(), state.seeded)); }
     void expect(std::uint32_t particles) { tracks_.reserve(particles); }
     /// `jumped`: particles may have been moved since the last call; nothing counts as a crossing.
-    void after_step(const sim::State& state, bool jumped = false);
+    void after_step(const Debris& debris, bool jumped = false);
 
     [[nodiscard]] double volume() const { return beyond(over_); }            ///< m3, over the crest
     [[nodiscard]] double passed_volume() const { return beyond(through_); }  ///< m3, through openings and meshes
@@ -34,7 +35,7 @@ class Overtopping {
         double volume = 0;  ///< m3 within five heights of the line and between its ends
         double height = 0;  ///< m, the mean depth of the deepest of the sections, four spacings square, along the face
     };
-    [[nodiscard]] Filling filling(const sim::State& state) const;
+    [[nodiscard]] Filling filling(const Debris& debris) const;
 
   private:
     struct Point {
@@ -73,6 +74,7 @@ class Overtopping {
     Extent near_;                // local
     double particle_volume_ = 0, reach_ = 0, section_ = 0, half_thickness_ = 0;
     std::vector<Track> tracks_;  // by particle id
+    std::vector<PlacedParticle> inside_;
     Side over_, through_;
     double first_time_ = never;
     std::uint64_t calls_ = 0;

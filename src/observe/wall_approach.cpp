@@ -4,27 +4,17 @@
 #include <cmath>
 #include <utility>
 
-#include "sim/particle_density.hpp"
-#include "simd/parallel.hpp"
-
 namespace talus::observe {
 
-void WallApproach::update(const sim::Model& model, const sim::State& state, const WallPatches& patches) {
+void WallApproach::update(const sim::Model& model, const Debris& debris, const WallPatches& patches) {
     flows_.clear();
     const std::vector<WallPatches::Column>& columns = patches.columns();
     if (columns.empty()) return;
     sums_.resize(columns.size());
-    if (near_.size() < state.count) near_.resize(std::max<std::size_t>(state.count, state.room()));
-    simd::parallel_ranges(state.count, 4096, [&](std::size_t first, std::size_t last) {
-        for (std::size_t i = first; i < last; ++i) {
-            near_[i] = !patches.near(state.position.x[i], state.position.y[i]).empty() && state.held[i] == 0;
-        }
-    });
+    debris.find_beside_walls(model, patches, beside_);
     const double size = model.particle_spacing, volume = model.particle_volume();
-    for (std::uint32_t i = 0; i < state.count; ++i) {
-        if (near_[i] == 0) continue;
-        const LocalPoint p = state.position.at(i), v = state.velocity.at(i);
-        const double density = density_of(model, state, i);
+    for (const WallParticle& particle : beside_.found) {
+        const LocalPoint p = particle.position, v = particle.velocity;
         for (const std::uint32_t k : patches.near(p.x, p.y)) {
             const WallPatches::Column& column = columns[k];
             const WallPatches::Column::Place place = column.place_of(p);
@@ -35,7 +25,7 @@ void WallApproach::update(const sim::Model& model, const sim::State& state, cons
             Sum& sum = sums_[k];
             if (sum.volume == 0) wetted_.push_back(k);
             sum.volume += part;
-            sum.mass += part * density;
+            sum.mass += part * particle.density;
             sum.x += part * v.x;
             sum.y += part * v.y;
             sum.z += part * v.z;

@@ -4,9 +4,9 @@
 #include <cstdint>
 #include <vector>
 
+#include "observe/debris.hpp"
 #include "observe/wall_patches.hpp"
 #include "sim/model.hpp"
-#include "sim/state.hpp"
 
 namespace talus::observe {
 
@@ -18,7 +18,7 @@ class WallApproach {
     explicit WallApproach(double edge) : edge_(edge) {}
 
     /// Updates with the current debris.
-    void update(const sim::Model& model, const sim::State& state, const WallPatches& patches);
+    void update(const sim::Model& model, const Debris& debris, const WallPatches& patches);
 
     struct Flow {
         std::int32_t building = -1;
@@ -36,7 +36,7 @@ class WallApproach {
         double x = 0, y = 0, z = 0;   // volume times velocity
     };
     double edge_;
-    std::vector<std::uint8_t> near_;     // by particle
+    Debris::BesideWalls beside_;
     std::vector<Sum> sums_;              // by column
     std::vector<std::uint32_t> wetted_;  // columns
     std::vector<Flow> flows_;

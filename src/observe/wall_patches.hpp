@@ -54,6 +54,7 @@ class WallPatches {
 
     /// Columns within reach of a local plan position, and some more.
     [[nodiscard]] std::span<const std::uint32_t> near(double x, double y) const { return bins_.near(x, y); }
+    [[nodiscard]] const terrain::PlanBins& bins() const { return bins_; }
 
     /// Calls f(patch, share / m2) for the patches of a building that are covered by a square of edge `size` centred at
     /// `at`. The part beyond the wall's end, foot or top is folded back, so that the shares add up to 1 and a uniform

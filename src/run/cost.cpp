@@ -37,7 +37,7 @@ template <class Stopped>
 std::vector<Rehearsal::Step> take_steps(Run& run, const Stopped& stopped) {
     std::vector<Rehearsal::Step> steps;
     while (!stopped()) {
-        const double before = run.wall_time(), max_speed = run.state().max_speed;
+        const double before = run.wall_time(), max_speed = run.summary().max_speed;
         const bool more = run.advance();
         if (run.wall_time() > before) steps.push_back({max_speed, run.wall_time() - before});
         if (!more) break;
@@ -76,9 +76,9 @@ Result<Rehearsal> rehearse(const scene::Scene& scene, double particle_spacing,
     const Clock::time_point start = Clock::now();
     TALUS_ASSIGN(const std::unique_ptr<Run> few, Run::start(scene, rehearsal.particle_spacing));
     double seeding_time = seconds_since(start);
-    std::uint32_t seeded = few->state().count;
+    std::uint32_t seeded = few->summary().count;
     rehearsal.steps = take_steps(*few, [&] { return stop_requested.load() || seconds_since(start) > rehearsal_limit; });
-    rehearsal.simulated_time = few->state().time;
+    rehearsal.simulated_time = few->summary().time;
     rehearsal.complete = few->phase() == RunPhase::at_rest || few->phase() == RunPhase::ended;
 
     const double finer = std::max(particle_spacing, spacing_of(scene, many_particles));
@@ -87,8 +87,8 @@ Result<Rehearsal> rehearse(const scene::Scene& scene, double particle_spacing,
         const Clock::time_point again = Clock::now();
         TALUS_ASSIGN(const std::unique_ptr<Run> many, Run::start(scene, finer));
         seeding_time = seconds_since(again);
-        rehearsal.many = many->state().count / static_cast<double>(seeded);
-        seeded = many->state().count;
+        rehearsal.many = many->summary().count / static_cast<double>(seeded);
+        seeded = many->summary().count;
         const double many_time = early_step_time(
             take_steps(*many, [&] { return stop_requested.load() || many->wall_time() > timed_early; }));
         if (many_time > 0) rehearsal.more_per_step = many_time / few_time / rehearsal.many;

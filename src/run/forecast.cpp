@@ -122,7 +122,7 @@ Outlook outlook_of(const sim::Simulation& simulation, double deposited_speed) {
     const double debris = std::max<double>(state.count, 1);
     Outlook outlook;
     outlook.enough_share = std::clamp(model.solver.stop_moving_share, std::min(1.0, 5 / debris), 1.0);
-    outlook.moving_share = motion_of(state, deposited_speed).moving / debris;
+    outlook.moving_share = simulation.motion(deposited_speed).moving / debris;
     for (std::size_t i = 0; i < state.awake; ++i) {
         const LocalPoint v = state.velocity.at(i);
         outlook.energy += v.x * v.x + v.y * v.y + v.z * v.z;

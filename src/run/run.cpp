@@ -47,13 +47,13 @@ Run::Run(RunStart start)
       observer_(model(), ground(), state(), start.flow_path, start.outputs,
                 start.outputs.map_cell.value_or(
                     terrain::default_map_cell(ground().terrain.cell(), model().particle_spacing))),
-      rest_(model().solver, start.outputs.deposited_speed),
+      rest_(model().solver),
       outputs_(start.outputs),
       followed_corridor_width_(start.followed_corridor_width),
       endless_(start.endless),
       smallest_time_step_(model().solver.end_time) {
     observer_.watch(start.gauges);
-    observer_.expect(state().seeded + simulation_.inflow().remaining());
+    observer_.expect(summary().seeded + simulation_.inflow().remaining());
     if (no_debris()) stop(RunPhase::at_rest, "there is no debris");
 }
 
@@ -69,15 +69,15 @@ bool Run::advance() {
         return false;
     }
     const auto start = std::chrono::steady_clock::now();
-    if (state().step % steps_between_good_states == 0) good_ = state();
+    if (summary().step % steps_between_good_states == 0) simulation_.keep();
     threads_.execute([&] { take_step(); });
     wall_time_ += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     return phase_ != RunPhase::fault;
 }
 
 bool Run::over() {
-    if (reached_end_time(model().solver, state())) {
-        stop(RunPhase::ended, end_time_reason(model(), state(), outputs_.deposited_speed));
+    if (reached_end_time(model().solver, summary())) {
+        stop(RunPhase::ended, end_time_reason(model(), summary(), simulation_.motion(outputs_.deposited_speed)));
     } else if (no_debris()) {
         stop(RunPhase::at_rest, no_debris_reason);
     }
@@ -86,18 +86,18 @@ bool Run::over() {
 
 void Run::take_step() {
     const Status stepped = simulation_.advance(&observer_);
-    smallest_time_step_ = std::min(smallest_time_step_, state().time_step);
-    largest_time_step_ = std::max(largest_time_step_, state().time_step);
+    smallest_time_step_ = std::min(smallest_time_step_, summary().time_step);
+    largest_time_step_ = std::max(largest_time_step_, summary().time_step);
     if (!stepped) {
         // A run that continues all the same needs gapless measurements.
         if (endless_) observer_.observe(model(), ground(), state());
-        if (!fault_) fault_ = record_fault(model(), ground(), good_, state(), stepped.error().message);
+        if (!fault_) fault_ = record_fault(model(), ground(), simulation_.kept(), state(), stepped.error().message);
         return stop(RunPhase::fault, stepped.error().message);
     }
     if (endless_) return;
-    if (!observer_.failed_buildings().empty()) rest_.stir(state().time);
-    const bool waiting = still_waiting(model(), state()) || inflow_to_come();
-    if (rest_.at_rest(state(), waiting)) {
+    if (!observer_.failed_buildings().empty()) rest_.stir(summary().time);
+    const bool waiting = still_waiting(model(), summary()) || inflow_to_come();
+    if (rest_.at_rest(summary(), simulation_.motion(outputs_.deposited_speed), waiting)) {
         stop(RunPhase::at_rest, rest_.reason());
     } else {
         (void)over();
@@ -109,15 +109,15 @@ void Run::change(const std::function<std::uint32_t(sim::Model&, sim::Ground&, si
     simulation_.change(
         [&](sim::Model& model, sim::Ground& ground, sim::State& state) { first_new_id = edit(model, ground, state); });
     observer_.follow(model(), ground(), state(), first_new_id);
-    good_ = state();
-    rest_.stir(state().time);
+    simulation_.keep();
+    rest_.stir(summary().time);
     if (phase_ == RunPhase::at_rest) stop(RunPhase::ready, "");
 }
 
 void Run::follow_gauge(std::size_t inflow, const std::vector<params::InflowSample>& hydrograph) {
     threads_.execute([&] { simulation_.follow_gauge(inflow, hydrograph); });
-    observer_.expect(state().seeded + simulation_.inflow().remaining());
-    rest_.stir(state().time);
+    observer_.expect(summary().seeded + simulation_.inflow().remaining());
+    rest_.stir(summary().time);
 }
 
 RunResult Run::result(const std::string& unfinished) const {
@@ -126,7 +126,7 @@ RunResult Run::result(const std::string& unfinished) const {
                     : phase_ == RunPhase::ready ? RunStatus::interrupted
                                                 : RunStatus::complete;
     result.stop_reason =
-        phase_ == RunPhase::ready ? fmt::format("{} at t = {:.4g} s", unfinished, state().time) : stop_reason_;
+        phase_ == RunPhase::ready ? fmt::format("{} at t = {:.4g} s", unfinished, summary().time) : stop_reason_;
     if (phase_ == RunPhase::fault) {
         result.fault = fault_;
         result.stop_reason += fault_->sentence;
@@ -137,9 +137,9 @@ RunResult Run::result(const std::string& unfinished) const {
     }
     result.stage_times = simulation_.stage_times();
     result.hash = hash_state(state());
-    result.particles = state().released();
-    result.steps = state().step;
-    result.simulated_time = state().time;
+    result.particles = summary().released();
+    result.steps = summary().step;
+    result.simulated_time = summary().time;
     result.wall_time = wall_time_;
     result.smallest_time_step = std::min(smallest_time_step_, largest_time_step_);
     result.largest_time_step = largest_time_step_;

@@ -67,6 +67,8 @@ class Run {
     [[nodiscard]] const sim::Model& model() const { return simulation_.model(); }
     [[nodiscard]] const sim::Ground& ground() const { return simulation_.ground(); }
     [[nodiscard]] const sim::State& state() const { return simulation_.state(); }
+    /// Without the particles, which are not copied from a device for it.
+    [[nodiscard]] const sim::StateSummary& summary() const { return simulation_.summary(); }
     [[nodiscard]] const sim::Simulation& simulation() const { return simulation_; }
     [[nodiscard]] const observe::Observer& observer() const { return observer_; }
     /// What is known about the first step that cannot be trusted, at fault.
@@ -83,9 +85,9 @@ class Run {
     void take_step();
     void stop(RunPhase phase, std::string why);
     [[nodiscard]] bool inflow_to_come() const {
-        return simulation_.inflow().remaining() > 0 || simulation_.inflow().awaits(state().time);
+        return simulation_.inflow().remaining() > 0 || simulation_.inflow().awaits(summary().time);
     }
-    [[nodiscard]] bool no_debris() const { return state().count == 0 && !inflow_to_come(); }
+    [[nodiscard]] bool no_debris() const { return summary().count == 0 && !inflow_to_come(); }
 
     Threads threads_;
     sim::Simulation simulation_;
@@ -96,8 +98,6 @@ class Run {
     bool endless_;
     RunPhase phase_ = RunPhase::ready;
     std::string stop_reason_;
-    /// A state of a few steps ago, after the last change: a fault is explained with it.
-    sim::State good_;
     std::optional<FaultRecord> fault_;
     double wall_time_ = 0, smallest_time_step_, largest_time_step_ = 0;
 };

@@ -16,13 +16,13 @@ namespace {
 Outlook look_at(const scene::Scene& scene, const Run& run) {
     Outlook outlook = outlook_of(run.simulation(), scene.spec.outputs.deposited_speed);
     for (const terrain::Inflow& inflow : scene.inflows) {
-        outlook.wait = std::max(outlook.wait, inflow.hydrograph.back().time - run.state().time);
+        outlook.wait = std::max(outlook.wait, inflow.hydrograph.back().time - run.summary().time);
     }
     return outlook;
 }
 
 Progress progress_of(const Run& run, const RunClock& clock) {
-    const sim::State& state = run.state();
+    const sim::StateSummary& state = run.summary();
     Progress progress{};
     progress.time = state.time;
     progress.end_time = run.model().solver.end_time;
@@ -52,10 +52,10 @@ Result<RunResult> run_scene(const scene::Scene& scene, const RunOptions& options
     Run& run = **started;
     FrameClock clock(scene, options);
     const auto show_frame = [&](bool at_end = false) {
-        if (!clock.due(run.state().time, at_end)) return;
+        if (!clock.due(run.summary().time, at_end)) return;
         const observe::MapAccumulator& maps = run.observer().maps();
         options.on_frame(
-            {run.state().time, maps.present(), maps.thinnest_depth(), &run.ground().terrain.frame(), &run.state()});
+            {run.summary().time, maps.present(), maps.thinnest_depth(), &run.ground().terrain.frame(), &run.state()});
     };
     const auto stopped = [&] { return options.stop_requested && options.stop_requested->load(); };
     RunClock run_clock(scene.spec.solver);
@@ -63,7 +63,7 @@ Result<RunResult> run_scene(const scene::Scene& scene, const RunOptions& options
     while (!stopped() && run.advance()) {
         show_frame();
         if (!options.on_progress) continue;
-        run_clock.tick(run.wall_time(), run.state().time, [&] { return look_at(scene, run); });
+        run_clock.tick(run.wall_time(), run.summary().time, [&] { return look_at(scene, run); });
         options.on_progress(progress_of(run, run_clock));
     }
     if (run.phase() != RunPhase::fault) show_frame(true);

@@ -4,17 +4,11 @@
 
 #include "params/spec.hpp"
 #include "sim/model.hpp"
+#include "sim/motion.hpp"
 #include "sim/state.hpp"
 
 /// When a run is over.
 namespace talus::run {
-
-/// Debris that still moves.
-struct Motion {
-    std::uint32_t moving = 0;  ///< particles faster than outputs.deposited_speed
-    std::uint32_t fast = 0;    ///< particles ten times as fast: they may still climb, fall or strike something
-};
-[[nodiscard]] Motion motion_of(const sim::State& state, double deposited_speed);
 
 /// Decides when moving debris can no longer change a product: for long enough, less than a given share of the debris
 /// has moved (with the defaults too little for a front or to be visible on a map), and almost none of that fast enough
@@ -22,29 +16,30 @@ struct Motion {
 /// compared with its peak, and so is that of all debris running out slowly.
 class RestDetector {
   public:
-    RestDetector(const params::SolverSpec& solver, double deposited_speed)
-        : share_(solver.stop_moving_share), duration_(solver.stop_duration), deposited_speed_(deposited_speed) {}
+    explicit RestDetector(const params::SolverSpec& solver)
+        : share_(solver.stop_moving_share), duration_(solver.stop_duration) {}
 
-    /// `waiting`: more debris is still to be released.
-    bool at_rest(const sim::State& state, bool waiting);
+    /// `motion` with the deposited speed. `waiting`: more debris is still to be released.
+    bool at_rest(const sim::StateSummary& state, const sim::Motion& motion, bool waiting);
     /// Restarts the rest duration, after something was changed.
     void stir(double time) { quiet_since_ = time; }
     /// "debris came to rest (...)".
     [[nodiscard]] std::string reason() const;
 
   private:
-    double share_, duration_, deposited_speed_;
+    double share_, duration_;
     double quiet_since_ = 0;
 };
 
 /// Whether a release has not started yet, or started in the last step; one that waits to be triggered does not count.
-[[nodiscard]] bool still_waiting(const sim::Model& model, const sim::State& state);
+[[nodiscard]] bool still_waiting(const sim::Model& model, const sim::StateSummary& state);
 
-[[nodiscard]] inline bool reached_end_time(const params::SolverSpec& solver, const sim::State& state) {
+[[nodiscard]] inline bool reached_end_time(const params::SolverSpec& solver, const sim::StateSummary& state) {
     return state.time >= solver.end_time - 1e-9;
 }
 /// "reached solver.end_time_s = 120", with the debris that still moved.
-[[nodiscard]] std::string end_time_reason(const sim::Model& model, const sim::State& state, double deposited_speed);
+[[nodiscard]] std::string end_time_reason(const sim::Model& model, const sim::StateSummary& state,
+                                          const sim::Motion& motion);
 
 inline constexpr const char* no_debris_reason = "all debris has left the terrain";
 

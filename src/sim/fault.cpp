@@ -12,7 +12,7 @@ double speed_bound(const Model& model, double highest_energy_head) {
     return 1.5 * std::sqrt(2 * model.gravity * fall) + 1;
 }
 
-Status find_fault(const Model& model, const State& state, double highest_energy_head) {
+Status find_fault(const Model& model, const StateSummary& state, double highest_energy_head) {
     const auto fault = [&]<class... Values>(fmt::format_string<double, Values...> text, Values... values) {
         return Error{fmt::vformat(text, fmt::make_format_args(state.time, values...))};
     };

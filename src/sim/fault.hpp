@@ -12,6 +12,6 @@ namespace talus::sim {
 
 /// Why the last step cannot be trusted, with the time and the parameter to change; success if it can.
 /// `highest_energy_head`: greatest z + v^2 / 2g of any particle when it was released, local m.
-[[nodiscard]] Status find_fault(const Model& model, const State& state, double highest_energy_head);
+[[nodiscard]] Status find_fault(const Model& model, const StateSummary& state, double highest_energy_head);
 
 }  // namespace talus::sim

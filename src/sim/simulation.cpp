@@ -34,7 +34,9 @@ struct Simulation::OwnStages {
     }
     [[nodiscard]] Status entrain_bed() const { return self.entrain_bed(); }
     void observe() const {
-        if (watcher != nullptr) watcher->observe(self.model_, self.ground_, self.state());
+        if (watcher == nullptr) return;
+        if (self.on_device() && watcher->observe_on(*self.device_, self.model_, self.ground_, self.state_)) return;
+        watcher->observe(self.model_, self.ground_, self.state());
     }
     void remove_failed() const {
         if (watcher == nullptr) return;
@@ -81,7 +83,34 @@ void Simulation::fetch() const {
 void Simulation::hand_over() {
     if (device_ == nullptr) return;
     if (std::exchange(device_is_older_, false)) device_->follow(model_, ground_, state_);
-    device_is_newer_ = true;
+    if (!std::exchange(device_is_newer_, true)) last_read_ = state_;
+}
+
+void Simulation::keep() {
+    kept_on_device_ = device_is_newer_;
+    if (!kept_on_device_) {
+        kept_ = state_;
+        return;
+    }
+    kept_.resize(state_.room());
+    static_cast<StateSummary&>(kept_) = state_;
+    device_->keep(state_);
+}
+
+const State& Simulation::kept() {
+    if (std::exchange(kept_on_device_, false)) {
+        try {
+            device_->fetch_kept(kept_);
+        } catch (const device::DeviceFailure&) {
+            kept_.count = 0;
+        }
+    }
+    return kept_;
+}
+
+Motion Simulation::motion(double deposited_speed) const {
+    if (device_is_newer_) return device_->count_motion(state_, MotionCount(deposited_speed));
+    return motion_of(state_, deposited_speed);
 }
 
 std::string Simulation::instruction_set() const {
@@ -93,6 +122,10 @@ double Simulation::mean_neighbours() const {
     double pairs = 0;
     for (std::uint32_t i = 0; i < state_.count; ++i) pairs += processor_->neighbours().count_of(i);
     return state_.count > 0 ? pairs / state_.count : 0;
+}
+
+device::Traffic Simulation::device_traffic() const {
+    return device_ != nullptr ? device_->traffic() : device::Traffic{};
 }
 
 std::size_t Simulation::device_bytes() const {
@@ -114,8 +147,10 @@ Status Simulation::advance(StepWatcher* watcher) {
     try {
         return step(*device_, model_, ground_, state_, times_, own);
     } catch (const device::DeviceFailure& failure) {
-        device_is_newer_ = false;  // what it holds is lost; the state is as it was last read
-        return Error{fmt::format("at t = {:.4g} s {}", state_.time, failure.what())};
+        const double time = state_.time;
+        // What it holds is lost; the state is as it was last read.
+        if (std::exchange(device_is_newer_, false)) static_cast<StateSummary&>(state_) = last_read_;
+        return Error{fmt::format("at t = {:.4g} s {}", time, failure.what())};
     }
 }
 
@@ -192,6 +227,17 @@ std::uint64_t hash_state(const State& state) {
         hash.add(values.data(), sizeof values);
     }
     return hash.value();
+}
+
+Motion motion_of(const State& state, double deposited_speed) {
+    const MotionCount count(deposited_speed);
+    return simd::reduce_ranges(
+        state.count, 8192, Motion{},
+        [&](std::size_t first, std::size_t last, Motion sum) {
+            for (std::size_t i = first; i < last; ++i) sum = sum + count(state.velocity.at(i));
+            return sum;
+        },
+        [](const Motion& a, const Motion& b) { return a + b; });
 }
 
 double kinetic_energy(const Model& model, const State& state) {

@@ -11,6 +11,7 @@
 #include "sim/device/backend.hpp"
 #include "sim/ground.hpp"
 #include "sim/model.hpp"
+#include "sim/motion.hpp"
 #include "sim/sources/entrainment.hpp"
 #include "sim/sources/inflow.hpp"
 #include "sim/stage_times.hpp"
@@ -48,6 +49,16 @@ class Simulation {
         fetch();
         return state_;
     }
+    /// What it knows of all particles together: nothing is copied.
+    [[nodiscard]] const StateSummary& summary() const { return state_; }
+    /// How many particles are faster than `deposited_speed`, m/s, and ten times that: nothing is copied.
+    [[nodiscard]] Motion motion(double deposited_speed) const;
+    /// Keeps a copy of where the particles are now and how they move; on the device, if they are there.
+    void keep();
+    /// That copy, with positions, velocities, ids, and what is held or asleep; without particles if a lost device had
+    /// it.
+    [[nodiscard]] const State& kept();
+
     [[nodiscard]] const InflowFeeder& inflow() const { return inflow_; }
     [[nodiscard]] const StageTimes& stage_times() const { return times_; }
     /// What moves the particles; never `automatic`.
@@ -58,6 +69,8 @@ class Simulation {
     [[nodiscard]] double mean_neighbours() const;
     /// Allocated on the device; 0 for the processor.
     [[nodiscard]] std::size_t device_bytes() const;
+    /// Copied to the device and back so far; none for the processor.
+    [[nodiscard]] device::Traffic device_traffic() const;
 
   private:
     struct OwnStages;
@@ -65,6 +78,8 @@ class Simulation {
     void follow_change();
     void fetch() const;
     void hand_over();
+    /// Whether the device has the particles as they are now, and will have them after the next step.
+    [[nodiscard]] bool on_device() const { return device_ != nullptr && !device_is_older_ && ground_.bed.empty(); }
     void measure_energy_and_speed();
     void make_room(std::uint32_t count);
     [[nodiscard]] Status entrain_bed();
@@ -74,6 +89,9 @@ class Simulation {
     mutable State state_;                   // its arrays follow the device when somebody reads them
     mutable bool device_is_newer_ = false;  // than the arrays of the state
     bool device_is_older_ = true;           // than model, ground and state
+    StateSummary last_read_;                // of the arrays that the state has while a device is newer
+    State kept_;
+    bool kept_on_device_ = false;
     InflowFeeder inflow_;
     std::uint32_t expected_ = 0;  // total number of particles from inflows
     std::uint32_t capacity_ = 0;  // particles that the backend has memory for
@@ -87,6 +105,9 @@ class Simulation {
 
 /// Hash of time, ids, positions and velocities in id order: equal for equal results, whatever the number of threads.
 [[nodiscard]] std::uint64_t hash_state(const State& state);
+
+/// Of the particles now.
+[[nodiscard]] Motion motion_of(const State& state, double deposited_speed);
 
 /// Sum of m v^2 / 2 over the particles, J.
 [[nodiscard]] double kinetic_energy(const Model& model, const State& state);

@@ -110,9 +110,8 @@ struct BuildingContact {
     float speed = 0;     ///< m/s, of the particle as it would be without this impulse
 };
 
-/// Everything that changes during a run, as a structure of arrays in an order that every step recomputes so that
-/// neighbours are close in memory.
-struct State {
+/// What a state knows of all its particles together.
+struct StateSummary {
     double time = 0;                ///< s
     double time_step = 0;           ///< s, of the last step
     double previous_time_step = 0;  ///< s, the step for which multipliers and stresses were computed
@@ -128,11 +127,6 @@ struct State {
     /// Particles from releases, less those that were removed.
     [[nodiscard]] std::uint32_t released() const { return seeded - entrained - removed; }
 
-#define TALUS_MEMBER(array, element, name) array name;
-    TALUS_PARTICLE_ARRAYS(TALUS_MEMBER)
-#undef TALUS_MEMBER
-    std::vector<float> density_of_id;  ///< kg/m3, by id; 0 and beyond its end: the rest density
-
     // Measured by the last step.
     double mean_compression = 0, max_compression = 0;  ///< of max(0, density / rest density - 1)
     double mean_added_compression = 0;                 ///< by the step, to what it started with
@@ -140,6 +134,15 @@ struct State {
     int iterations = 0;                                ///< of the step
     double max_speed = 0;                              ///< m/s
     std::vector<BuildingContact> building_contacts;
+};
+
+/// Everything that changes during a run, as a structure of arrays in an order that every step recomputes so that
+/// neighbours are close in memory.
+struct State : StateSummary {
+#define TALUS_MEMBER(array, element, name) array name;
+    TALUS_PARTICLE_ARRAYS(TALUS_MEMBER)
+#undef TALUS_MEMBER
+    std::vector<float> density_of_id;  ///< kg/m3, by id; 0 and beyond its end: the rest density
 
     void resize(std::size_t n) {
 #define TALUS_RESIZE(array, element, name) sim::resize(name, n);

@@ -8,17 +8,6 @@
 namespace talus::terrain {
 namespace {
 
-struct Projection {
-    double share;             ///< of the segment, 0 to 1
-    double distance_squared;  ///< m2
-};
-
-Projection project(const PathSegment& s, const PlanPoint& p) {
-    const double share = std::clamp((p.x - s.x) * s.share_x + (p.y - s.y) * s.share_y, 0.0, 1.0);
-    const double x = s.x + share * s.dx - p.x, y = s.y + share * s.dy - p.y;
-    return {share, x * x + y * y};
-}
-
 /// Whether `p` is nearer to `a` than to `b`: if this holds at the corners of a cell, it holds in the whole cell.
 bool nearer_to(const PlanPoint& a, const PlanPoint& b, const PlanPoint& p) {
     const double dx = b.x - a.x, dy = b.y - a.y;
@@ -75,7 +64,7 @@ void FlowPath::fill_nearest_segment() {
         const int last_column = column(std::max(a.x, b.x) + reach), last_row = row(std::max(a.y, b.y) + reach);
         for (int r = row(std::min(a.y, b.y) - reach); r <= last_row; ++r) {
             for (int c = column(std::min(a.x, b.x) - reach); c <= last_column; ++c) {
-                const double d = project(segments_[i], table_.centre(c, r)).distance_squared;
+                const double d = PathField::project(segments_[i], table_.centre(c, r)).distance_squared;
                 const std::size_t k = table_.index(c, r);
                 if (d >= nearest[k]) continue;
                 nearest[k] = d;
@@ -101,7 +90,7 @@ void FlowPath::fill_chainage_bound() {
                 for (const double x : {-0.5, 0.5}) {
                     for (const double y : {-0.5, 0.5}) {
                         const PlanPoint corner{centre.x + x * table_.cell, centre.y + y * table_.cell};
-                        share = std::max(share, project(segments_[i], corner).share);
+                        share = std::max(share, PathField::project(segments_[i], corner).share);
                         nearer_before = nearer_before && nearer_to(points_[i - 1], points_[i], corner);
                     }
                 }
@@ -142,30 +131,12 @@ Extent FlowPath::extent_beyond(double chainage) const {
     return extent_beyond_[std::min(k, extent_beyond_.size() - 1)];
 }
 
-std::pair<std::size_t, std::size_t> FlowPath::find_segments_around(std::size_t middle) const {
+SegmentRange FlowPath::find_segments_around(std::size_t middle) const {
     std::size_t first = middle, last = middle + 1;
     const double begin = chainage_[first] - 2 * table_.cell, end = chainage_[last] + 2 * table_.cell;
     while (first > 0 && chainage_[first] >= begin) --first;
     while (last + 1 < points_.size() && chainage_[last] <= end) ++last;
-    return {first, last};
-}
-
-std::optional<PathPosition> FlowPath::locate(const PlanPoint& p) const {
-    const std::size_t cell = cell_of(p);
-    if (cell >= nearest_segment_.size() || nearest_segment_[cell] < 0) return std::nullopt;
-
-    // The cell's segment is nearest to its centre; the one nearest to this point may be slightly up or down the path.
-    const auto [first, last] = segments_around_[static_cast<std::size_t>(nearest_segment_[cell])];
-    double nearest = std::numeric_limits<double>::infinity(), chainage = 0;
-    for (std::size_t i = first; i < last; ++i) {
-        const Projection q = project(segments_[i], p);
-        if (q.distance_squared >= nearest) continue;
-        nearest = q.distance_squared;
-        chainage = chainage_[i] + q.share * (chainage_[i + 1] - chainage_[i]);
-    }
-    const double offset = std::sqrt(nearest);
-    if (offset > corridor_width_ / 2) return std::nullopt;
-    return PathPosition{chainage, offset};
+    return {static_cast<std::uint32_t>(first), static_cast<std::uint32_t>(last)};
 }
 
 PlanPoint FlowPath::point_at(double chainage) const {

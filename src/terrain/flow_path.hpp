@@ -1,12 +1,15 @@
 #pragma once
 
+#include <algorithm>
+#include <cmath>
 #include <cstdint>
+#include <limits>
 #include <optional>
-#include <utility>
 #include <vector>
 
 #include "core/geometry.hpp"
 #include "core/grid.hpp"
+#include "core/number.hpp"
 #include "core/result.hpp"
 
 namespace talus::terrain {
@@ -24,6 +27,67 @@ struct PathSegment {
     double share_x, share_y;  ///< rise of a projection's share of the segment, 1/m
 };
 
+/// Segments [first, last) of a path.
+struct SegmentRange {
+    std::uint32_t first, last;
+};
+
+/// What locates positions along a FlowPath, by pointers: see there. It owns nothing.
+struct PathField {
+    double x_min = 0, y_min = 0, inverse_cell = 1;  ///< of the tables
+    int columns = 0, rows = 0;
+    double half_width = 0;  ///< of the corridor
+    const PathSegment* segments = nullptr;
+    const double* chainage = nullptr;       ///< m, where each segment begins, and the end
+    const SegmentRange* around = nullptr;   ///< by segment: those that may be nearest to a position in one of its cells
+    const std::int32_t* nearest = nullptr;  ///< segment to a cell's centre; -1: no part of the cell is in the corridor
+    const float* bound = nullptr;
+
+    /// Of a segment at the projection of `p` on it.
+    struct Projection {
+        double share;             ///< 0 to 1
+        double distance_squared;  ///< m2
+    };
+    [[nodiscard]] static TALUS_DEVICE Projection project(const PathSegment& s, const PlanPoint& p) {
+        const double share = std::clamp((p.x - s.x) * s.share_x + (p.y - s.y) * s.share_y, 0.0, 1.0);
+        const double x = s.x + share * s.dx - p.x, y = s.y + share * s.dy - p.y;
+        return {share, x * x + y * y};
+    }
+
+    [[nodiscard]] TALUS_DEVICE std::size_t cells() const {
+        return static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows);
+    }
+    /// Index into the tables; cells() outside.
+    [[nodiscard]] TALUS_DEVICE std::size_t cell_of(const PlanPoint& p) const {
+        const double u = (p.x - x_min) * inverse_cell, v = (p.y - y_min) * inverse_cell;
+        if (!(u >= 0 && v >= 0 && u < columns && v < rows)) return cells();  // NaN, too
+        return static_cast<std::size_t>(static_cast<int>(v)) * static_cast<std::size_t>(columns) +
+               static_cast<std::size_t>(static_cast<int>(u));
+    }
+    [[nodiscard]] TALUS_DEVICE float chainage_bound(const PlanPoint& p) const {
+        const std::size_t cell = cell_of(p);
+        return cell < cells() ? bound[cell] : -1.0F;
+    }
+    [[nodiscard]] TALUS_DEVICE std::optional<PathPosition> locate(const PlanPoint& p) const {
+        const std::size_t cell = cell_of(p);
+        if (cell >= cells() || nearest[cell] < 0) return std::nullopt;
+
+        // The cell's segment is nearest to its centre; the one nearest to this point may be slightly up or down the
+        // path.
+        const SegmentRange range = around[nearest[cell]];
+        double least = std::numeric_limits<double>::infinity(), at = 0;
+        for (std::uint32_t i = range.first; i < range.last; ++i) {
+            const Projection q = project(segments[i], p);
+            if (q.distance_squared >= least) continue;
+            least = q.distance_squared;
+            at = chainage[i] + q.share * (chainage[i + 1] - chainage[i]);
+        }
+        const double offset = std::sqrt(least);
+        if (offset > half_width) return std::nullopt;
+        return PathPosition{at, offset};
+    }
+};
+
 /// The line along which debris is expected to run (the thalweg), and the chainage along it.
 class FlowPath {
   public:
@@ -38,13 +102,18 @@ class FlowPath {
 
     /// Projection on the nearest part of the path, its ends included; empty outside the corridor. A table look-up and
     /// the few segments near it.
-    [[nodiscard]] std::optional<PathPosition> locate(const PlanPoint& p) const;
+    [[nodiscard]] std::optional<PathPosition> locate(const PlanPoint& p) const { return field().locate(p); }
 
     /// An upper bound of the chainage by `locate`, less than 0 where that is empty: one table look-up, to skip
     /// positions far behind a front.
-    [[nodiscard]] float chainage_bound(const PlanPoint& p) const {
-        const std::size_t cell = cell_of(p);
-        return cell < chainage_bound_.size() ? chainage_bound_[cell] : -1.0F;
+    [[nodiscard]] float chainage_bound(const PlanPoint& p) const { return field().chainage_bound(p); }
+
+    /// For whoever locates many positions, or elsewhere: valid as long as the path.
+    [[nodiscard]] PathField field() const {
+        return {
+            table_.x_min,          table_.y_min,     inverse_cell_,    table_.columns,          table_.rows,
+            corridor_width_ / 2,   segments_.data(), chainage_.data(), segments_around_.data(), nearest_segment_.data(),
+            chainage_bound_.data()};
     }
 
     /// A rectangle around every position whose `chainage_bound` is `chainage` or more; empty (maximum less than
@@ -55,22 +124,16 @@ class FlowPath {
     [[nodiscard]] PlanPoint point_at(double chainage) const;
 
   private:
-    /// Index into the tables; their size outside their extent.
-    [[nodiscard]] std::size_t cell_of(const PlanPoint& p) const {
-        const double u = (p.x - table_.x_min) * inverse_cell_, v = (p.y - table_.y_min) * inverse_cell_;
-        if (!(u >= 0 && v >= 0 && u < table_.columns && v < table_.rows)) return nearest_segment_.size();  // NaN, too
-        return table_.index(static_cast<int>(u), static_cast<int>(v));
-    }
     void fill_nearest_segment();
     void fill_chainage_bound();
     void fill_extent_beyond();
     /// The segments [first, last) that may be nearest to a position in a cell whose centre is nearest to `middle`.
-    [[nodiscard]] std::pair<std::size_t, std::size_t> find_segments_around(std::size_t middle) const;
+    [[nodiscard]] SegmentRange find_segments_around(std::size_t middle) const;
 
     std::vector<PlanPoint> points_;
     std::vector<double> chainage_;
     std::vector<PathSegment> segments_;  // between one point and the next
-    std::vector<std::pair<std::size_t, std::size_t>> segments_around_;
+    std::vector<SegmentRange> segments_around_;
     double corridor_width_ = 0;
     GridGeometry table_{0, 0, 1, 0, 0};
     double inverse_cell_ = 1;

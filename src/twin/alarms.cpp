@@ -55,7 +55,7 @@ AlarmWatch::AlarmWatch(const scene::Scene& scene) : waiting_(scene.spec.alarms.s
 AlarmWatch::Front AlarmWatch::front_of(const LiveRun& run) {
     Front front{run.observer().front_chainage(), {}};
     const std::vector<observe::FrontSample> samples = run.observer().front();
-    if (samples.empty() || run.state().time - samples.back().arrival_time > lately) return front;
+    if (samples.empty() || run.summary().time - samples.back().arrival_time > lately) return front;
     if (const double velocity = samples.back().front_velocity; velocity > 0) front.velocity = velocity;
     return front;
 }
@@ -78,7 +78,7 @@ std::optional<AlarmWatch::Finding> AlarmWatch::approach(const Rule& rule, const 
     const bool met = spec.distance ? distance <= *spec.distance : wait && *wait <= *spec.lead_time;
     if (!met) return {};
     Finding found;
-    if (wait) found.expected = run.state().time + *wait;
+    if (wait) found.expected = run.summary().time + *wait;
     found.sentence = distance > 0
                          ? fmt::format("front at chainage {:.0f} m, {:.0f} m before {}", front.chainage, distance, name)
                          : fmt::format("front at {}", name);
@@ -92,7 +92,7 @@ std::optional<AlarmWatch::Finding> AlarmWatch::load(const Rule& rule, const Live
     if (measured == nullptr) return {};
     if (spec.depth && measured->peak_depth >= *spec.depth) {
         return Finding{fmt::format("debris {:.2f} m deep in front of {}", measured->peak_depth, measured->name),
-                       run.state().time};
+                       run.summary().time};
     }
     const bool impact = spec.impact_pressure.has_value();
     if (spec.depth || (impact ? measured->peak_impact_pressure < *spec.impact_pressure
@@ -102,7 +102,7 @@ std::optional<AlarmWatch::Finding> AlarmWatch::load(const Rule& rule, const Live
     return Finding{
         fmt::format("{} pressure {:.1f} kPa on {}", impact ? "impact" : "dynamic",
                     (impact ? measured->peak_impact_pressure : measured->peak_dynamic_pressure) / 1000, measured->name),
-        run.state().time};
+        run.summary().time};
 }
 
 std::optional<AlarmWatch::Finding> AlarmWatch::find(const Rule& rule, const LiveRun& run) {
@@ -111,7 +111,8 @@ std::optional<AlarmWatch::Finding> AlarmWatch::find(const Rule& rule, const Live
     if (!spec.structure.empty()) return load(rule, run);
     const double depth = depth_at(run.observer().maps(), {*spec.x, *spec.y});
     if (depth < *spec.depth) return {};
-    return Finding{fmt::format("debris {:.2f} m deep at ({:.1f}, {:.1f})", depth, *spec.x, *spec.y), run.state().time};
+    return Finding{fmt::format("debris {:.2f} m deep at ({:.1f}, {:.1f})", depth, *spec.x, *spec.y),
+                   run.summary().time};
 }
 
 void AlarmWatch::check(const LiveRun& run) {

@@ -18,7 +18,7 @@ LiveRun::LiveRun(std::unique_ptr<run::Run> run, const scene::Scene& scene, Setup
     : run_(std::move(run)),
       begun_with_(std::move(setup)),
       setup_(begun_with_),
-      slots_(run_->state().seeded),
+      slots_(run_->summary().seeded),
       recording_(options.frame_interval, options.recording_bytes),
       clock_(run_->model().solver),
       deposited_speed_(scene.spec.outputs.deposited_speed),
@@ -40,7 +40,7 @@ double LiveRun::start_time_of(const std::string& release_id) const {
 }
 
 bool LiveRun::too_compressed() const {
-    return sim::too_compressed(state());
+    return sim::too_compressed(summary());
 }
 
 FramePtr LiveRun::frame(unsigned stride, unsigned flags) const {
@@ -51,26 +51,26 @@ FramePtr LiveRun::frame(unsigned stride, unsigned flags) const {
 }
 
 void LiveRun::record() {
-    if (!recording_.due(state().time)) return;
+    if (!recording_.due(summary().time)) return;
     recording_.add(frame(1, 0));
     record_impacts();
-    erosion_history_.add(state().time, state().entrained, ground().bed.eroded);
+    erosion_history_.add(summary().time, summary().entrained, ground().bed.eroded);
 }
 
 void LiveRun::record_impacts() {
     for (std::size_t k = 0; k < obstacles_.size(); ++k) {
         const bool untouched = !observer().impacts()[k].hit && !obstacles_[k].barrier;
-        if (obstacles_[k].stands && !untouched) impact_history_.add(k, state().time, impact_now(k));
+        if (obstacles_[k].stands && !untouched) impact_history_.add(k, summary().time, impact_now(k));
     }
 }
 
 void LiveRun::advance() {
     if (phase() != run::RunPhase::ready) return;
     for (std::size_t g = 0; g < groups_.size(); ++g) {
-        groups_[g].begun = groups_[g].begun || model().releases[g].start_time <= state().time;
+        groups_[g].begun = groups_[g].begun || model().releases[g].start_time <= summary().time;
     }
     const bool stepped = run_->advance();
-    slots_ = std::max(slots_, state().seeded);  // debris was injected or entrained
+    slots_ = std::max(slots_, summary().seeded);  // debris was injected or entrained
     if (!stepped) return;
     note_failed();
     record();
@@ -80,20 +80,20 @@ void LiveRun::advance() {
     constexpr double longest_step = 1;  // s; what takes longer is a pause
     going_ += std::min(longest_step, std::chrono::duration<double>(now - stepped_at_).count());
     stepped_at_ = now;
-    clock_.tick(going_, state().time, [this] { return outlook(); });
+    clock_.tick(going_, summary().time, [this] { return outlook(); });
 }
 
 run::Outlook LiveRun::outlook() const {
     run::Outlook outlook = run::outlook_of(run_->simulation(), deposited_speed_);
     for (const InflowSetup& inflow : begun_with_.inflows) {
-        outlook.wait = std::max(outlook.wait, inflow.body->hydrograph.back().time - state().time);
+        outlook.wait = std::max(outlook.wait, inflow.body->hydrograph.back().time - summary().time);
     }
     return outlook;
 }
 
 std::optional<double> LiveRun::expected_end() const {
-    if (phase() != run::RunPhase::ready) return state().time;
-    if (state().step == 0 || clock_.expected_end() <= state().time) return {};
+    if (phase() != run::RunPhase::ready) return summary().time;
+    if (summary().step == 0 || clock_.expected_end() <= summary().time) return {};
     return clock_.expected_end();
 }
 
@@ -129,7 +129,7 @@ void LiveRun::follow_gauge(const std::string& inflow_id, const std::shared_ptr<c
 }
 
 std::vector<float> LiveRun::eroded(std::optional<double> time) const {
-    if (state().entrained == 0) return {};
+    if (summary().entrained == 0) return {};
     return time ? erosion_history_.at(*time) : ground().bed.eroded;
 }
 
@@ -146,7 +146,7 @@ void LiveRun::note_failed() {
     for (const std::size_t k : observer().failed_buildings()) {
         obstacles_[k].stands = false;
         obstacles_[k].failed = true;
-        impact_history_.add(k, state().time, impact_now(k));
+        impact_history_.add(k, summary().time, impact_now(k));
     }
 }
 

@@ -54,6 +54,7 @@ class LiveRun {
     [[nodiscard]] const sim::Model& model() const { return run_->model(); }
     [[nodiscard]] const sim::Ground& ground() const { return run_->ground(); }
     [[nodiscard]] const sim::State& state() const { return run_->state(); }
+    [[nodiscard]] const sim::StateSummary& summary() const { return run_->summary(); }
     [[nodiscard]] const observe::Observer& observer() const { return run_->observer(); }
     [[nodiscard]] const Recording& recording() const { return recording_; }
     [[nodiscard]] bool too_compressed() const;

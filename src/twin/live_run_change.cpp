@@ -82,16 +82,16 @@ Status LiveRun::plan_obstacles(const Setup& next, Change& change) const {
             find_id(next.buildings, obstacle.id) != nullptr || find_id(next.barriers, obstacle.id) != nullptr;
         if (wanted || !(obstacle.stands || obstacle.failed)) continue;
         obstacle.stands = obstacle.failed = false;
-        obstacle.until_step = state().step;
+        obstacle.until_step = summary().step;
         obstacle.last = impact_now(k);
-        obstacle.last.removed_time = state().time;
+        obstacle.last.removed_time = summary().time;
         buildings[k] = without_solid(buildings[k]);
         change.touched.push_back(extent_of(*obstacle.body));
     }
     const auto put = [&](const auto& entry, bool barrier) {
         Obstacle* obstacle = find_id(change.obstacles, entry.id);
         if (obstacle == nullptr) {
-            change.obstacles.push_back({entry.id, entry.body, barrier, state().step});
+            change.obstacles.push_back({entry.id, entry.body, barrier, summary().step});
             buildings.push_back(*entry.body);
             change.touched.push_back(extent_of(*entry.body));
             return;
@@ -103,7 +103,7 @@ Status LiveRun::plan_obstacles(const Setup& next, Change& change) const {
         if (obstacle->stands) change.touched.push_back(extent_of(*obstacle->body));
         change.touched.push_back(extent_of(*entry.body));
         if (moved) change.renewed.push_back(k);
-        *obstacle = {entry.id, entry.body, barrier, moved ? state().step : obstacle->since_step};
+        *obstacle = {entry.id, entry.body, barrier, moved ? summary().step : obstacle->since_step};
         buildings[k] = *entry.body;
     };
     for (const BuildingSetup& building : next.buildings) put(building, false);
@@ -143,7 +143,7 @@ Status LiveRun::plan_releases(const Setup& next, Change& change, const sim::Prog
         if (group != nullptr && !group->begun) {
             seed = !same_shape(before->body, release.body) || overlaps_any(release.body->extent(), change.touched);
         } else if (group != nullptr && before->triggered && !release.triggered) {
-            seed = release.body->spec.start_time > state().time;  // its start is revoked
+            seed = release.body->spec.start_time > summary().time;  // its start is revoked
         }
         if (!seed) continue;
         to_seed.push_back(&release);

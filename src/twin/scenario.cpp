@@ -94,7 +94,7 @@ Status Scenario::Parts::start(const Setup& setup, const sim::Progress& progress)
 }
 
 Status Scenario::Parts::prepare(const Setup& next_setup, Prepared& prepared, const sim::Progress& progress) const {
-    if (run->state().step > 0 || begin_alike(next_setup, run->begun_with())) {
+    if (run->summary().step > 0 || begin_alike(next_setup, run->begun_with())) {
         TALUS_ASSIGN(prepared.change, run->prepare(next_setup, progress));
         return {};
     }
@@ -174,14 +174,14 @@ void Scenario::advance() {
 }
 
 void Scenario::Parts::note_change(const json& action, const std::string& by, const std::string& sentence) {
-    const std::uint64_t step = run->state().step;
+    const std::uint64_t step = run->summary().step;
     if (step == 0 || only_renames(action)) return;
     const bool undoes = action["action"] == "undo", redoes = action["action"] == "redo";
     const bool reverses = !changes.empty() && changes.back().step == step && (changes.back().undoes ? redoes : undoes);
     if (reverses) {
         changes.pop_back();
     } else {
-        changes.push_back({step, run->state().time, by, sentence, undoes});
+        changes.push_back({step, run->summary().time, by, sentence, undoes});
     }
 }
 
@@ -209,7 +209,7 @@ Result<std::shared_ptr<Scenario::Prepared>> Scenario::prepare(const json& action
         return prepared;
     }
     const ActionContext context{*p.scene, p.particle_spacing, p.run->model().viscosity,
-                                [&](const std::string& id) { return p.run->has_begun(id); }, p.run->state().step > 0};
+                                [&](const std::string& id) { return p.run->has_begun(id); }, p.run->summary().step > 0};
     if (name == "gauge") {
         TALUS_ASSIGN(prepared->gauge, p.prepare_gauge(action, context));
         prepared->done = {prepared->gauge->sentence, ""};
@@ -230,7 +230,7 @@ Result<GaugeReading> Scenario::Parts::prepare_gauge(const json& action, const Ac
         if (entry.action["action"] == "trigger") last = std::max(last, 0.0);
         if (entry.action["action"] == "gauge") last = entry.action["time_s"];
     }
-    return read_gauge(action, setup(), run->begun_with(), context, run->state().time, last);
+    return read_gauge(action, setup(), run->begun_with(), context, run->summary().time, last);
 }
 
 void Scenario::Parts::follow_gauge(const GaugeReading& reading) {
@@ -319,10 +319,10 @@ std::string Scenario::message() const {
     return parts_->run->message() + (phase() == run::RunPhase::fault ? parts_->fault_note : "");
 }
 double Scenario::time() const {
-    return parts_->run->state().time;
+    return parts_->run->summary().time;
 }
 std::uint64_t Scenario::step() const {
-    return parts_->run->state().step;
+    return parts_->run->summary().step;
 }
 std::uint64_t Scenario::hash() const {
     return hash_state(parts_->run->state());

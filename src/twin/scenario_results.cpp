@@ -81,7 +81,7 @@ Result<std::function<Grid<float>()>> Scenario::layer(const std::string& name, st
 }
 
 bool Scenario::has_erosion() const {
-    return parts_->run->state().entrained > 0;
+    return parts_->run->summary().entrained > 0;
 }
 
 std::pair<scene::Scene, run::RunResult> Scenario::Parts::outcome() const {

@@ -121,7 +121,7 @@ Trial::Trial(run::RunStart start, const Watch& watch, OnFault on_fault)
     : run_(endless(std::move(start), watch)), watch_(watch), on_fault_(on_fault) {}
 
 bool Trial::advance_to(double time, const std::function<void()>& after_step) {
-    while (!stopped_ && state().time < time - 1e-9) {
+    while (!stopped_ && run_.summary().time < time - 1e-9) {
         if (watch_.stopped()) {
             problem_ = "stopped by the user";
             stopped_ = true;
@@ -129,7 +129,7 @@ bool Trial::advance_to(double time, const std::function<void()>& after_step) {
         }
         if (!run_.advance()) {
             if (problem_.empty()) problem_ = run_.stop_reason();
-            stopped_ = on_fault_ == OnFault::stop || !std::isfinite(state().max_speed);
+            stopped_ = on_fault_ == OnFault::stop || !std::isfinite(run_.summary().max_speed);
         }
         if (!stopped_ && after_step) after_step();
     }

@@ -3,6 +3,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "sim/simulation.hpp"
+
 namespace talus::run {
 namespace {
 
@@ -19,15 +21,19 @@ void set_speeds(sim::State& state, std::uint32_t first, std::uint32_t last, floa
     for (std::uint32_t i = first; i < last; ++i) state.velocity.set(i, {0, speed, 0});
 }
 
+bool at_rest(RestDetector& rest, const sim::State& state, bool waiting) {
+    return rest.at_rest(state, motion_of(state, params::OutputSpec{}.deposited_speed), waiting);
+}
+
 /// Whether ten seconds of this are a run's end, with the default limits.
 bool ends(sim::State state, const params::SolverSpec& solver = {}) {
-    RestDetector rest(solver, params::OutputSpec{}.deposited_speed);
+    RestDetector rest(solver);
     // Before, all of it ran at 15 m/s: next to that momentum, little is left in what follows.
     const sim::State before = debris(state.count, state.count, 15);
-    if (rest.at_rest(before, false)) return true;
+    if (at_rest(rest, before, false)) return true;
     for (int k = 1; k <= 100; ++k) {
         state.time = 0.1 * k;
-        if (rest.at_rest(state, false)) return true;
+        if (at_rest(rest, state, false)) return true;
     }
     return false;
 }
@@ -58,24 +64,24 @@ TEST(RestDetector, it_is_over_when_hardly_anything_moves_and_nothing_fast) {
 TEST(RestDetector, it_must_last) {
     params::SolverSpec solver;
     solver.stop_duration = 3;
-    RestDetector rest(solver, 0.1);
+    RestDetector rest(solver);
     sim::State state = debris(100, 0, 0);
     for (const double time : {0.0, 1.5, 2.9}) {
         state.time = time;
-        EXPECT_FALSE(rest.at_rest(state, false));
+        EXPECT_FALSE(at_rest(rest, state, false));
     }
     set_speeds(state, 0, 50, 1);
     state.time = 2.95;
-    EXPECT_FALSE(rest.at_rest(state, false));
+    EXPECT_FALSE(at_rest(rest, state, false));
     set_speeds(state, 0, 50, 0);
     state.time = 5.9;
-    EXPECT_FALSE(rest.at_rest(state, false));
+    EXPECT_FALSE(at_rest(rest, state, false));
     state.time = 5.96;
-    EXPECT_TRUE(rest.at_rest(state, false));
-    EXPECT_FALSE(rest.at_rest(state, true)) << "more is to come";
+    EXPECT_TRUE(at_rest(rest, state, false));
+    EXPECT_FALSE(at_rest(rest, state, true)) << "more is to come";
     rest.stir(6);
     state.time = 8.9;
-    EXPECT_FALSE(rest.at_rest(state, false));
+    EXPECT_FALSE(at_rest(rest, state, false));
 }
 
 TEST(RestDetector, a_share_of_zero_never_ends_a_run) {
@@ -88,8 +94,9 @@ TEST(EndTime, says_what_still_moved) {
     sim::Model model;
     model.particle_spacing = 0.5;
     model.solver.end_time = 90;
-    EXPECT_EQ(end_time_reason(model, debris(100, 0, 0), 0.1), "reached solver.end_time_s = 90");
-    EXPECT_EQ(end_time_reason(model, debris(100, 56, 0.3F), 0.1),
+    const auto reason = [&](const sim::State& state) { return end_time_reason(model, state, motion_of(state, 0.1)); };
+    EXPECT_EQ(reason(debris(100, 0, 0)), "reached solver.end_time_s = 90");
+    EXPECT_EQ(reason(debris(100, 56, 0.3F)),
               "reached solver.end_time_s = 90 with 7 m3 still moving (56 % of the debris)");
 }
 

@@ -182,6 +182,38 @@ TEST(Device, takes_up_what_a_user_changes_between_two_steps) {
     EXPECT_NEAR(summary_of(simulation.state()).centre.y, before.centre.y + 1, 0.1);
 }
 
+TEST(Device, keeps_a_copy_of_the_particles_for_a_later_fault) {
+    Simulation simulation = busy(BackendChoice::host);
+    for (int i = 0; i < 3; ++i) ASSERT_TRUE(simulation.advance());
+    simulation.keep();
+    const State then = simulation.state();
+    const std::uint64_t copied = simulation.device_traffic().to_host;
+    for (int i = 0; i < 3; ++i) ASSERT_TRUE(simulation.advance());
+    const State& kept = simulation.kept();
+    EXPECT_GT(simulation.device_traffic().to_host, copied);
+    EXPECT_EQ(kept.step, then.step);
+    EXPECT_EQ(hash_state(kept), hash_state(then));
+    EXPECT_NE(hash_state(kept), hash_state(simulation.state()));
+}
+
+TEST(Device, counts_what_moves_without_copying_it) {
+    params::SolverSpec solver;
+    solver.backend = BackendChoice::host;
+    const terrain::Terrain terrain = testing::inclined_plane(30);
+    Simulation slab =
+        testing::simulate({}, solver, terrain, {testing::block(terrain, testing::rectangle(10, 10, 30, 30), 1)}, 0.5);
+    for (int i = 0; i < 20; ++i) ASSERT_TRUE(slab.advance());
+    const std::uint64_t before = slab.device_traffic().to_host;
+    const double speed = slab.summary().max_speed / 2;
+    const Motion motion = slab.motion(speed), fast = slab.motion(speed / 20);
+    EXPECT_LT(slab.device_traffic().to_host - before, slab.summary().count);
+    EXPECT_EQ(motion.moving, motion_of(slab.state(), speed).moving);
+    EXPECT_EQ(fast.fast, motion_of(slab.state(), speed / 20).fast);
+    EXPECT_GT(fast.fast, 0U);
+    EXPECT_GT(motion.moving, 0U);
+    EXPECT_LT(motion.moving, slab.summary().count);
+}
+
 TEST(Backends, are_chosen_by_name_number_of_particles_and_what_the_machine_has) {
     EXPECT_EQ(settled_backend(BackendChoice::cpu, 1000000), BackendChoice::cpu);
     EXPECT_EQ(settled_backend(BackendChoice::host, 10), BackendChoice::host);

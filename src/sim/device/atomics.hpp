@@ -9,7 +9,8 @@
 /// matter.
 namespace talus::sim::device {
 
-TALUS_DEVICE inline void add_atomically(std::uint32_t& sum, std::uint32_t value) {
+template <class Whole>
+TALUS_DEVICE void add_atomically(Whole& sum, Whole value) {
 #if defined(__CUDA_ARCH__)
     atomicAdd(&sum, value);
 #else

@@ -1,12 +1,14 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <memory>
 #include <stdexcept>
 #include <string>
 
 #include "sim/ground.hpp"
 #include "sim/model.hpp"
+#include "sim/motion.hpp"
 #include "sim/state.hpp"
 
 /// The stages of a step as kernels: functors over a particle or a cell that an executor runs, on a graphics card or as
@@ -17,6 +19,11 @@ namespace talus::sim::device {
 class DeviceFailure : public std::runtime_error {
   public:
     using std::runtime_error::runtime_error;
+};
+
+/// Bytes that were copied so far.
+struct Traffic {
+    std::uint64_t to_device = 0, to_host = 0;
 };
 
 /// The third backend of step(), beside the processor's and the reference. The particles are on the device; the `state`
@@ -33,6 +40,12 @@ class Backend {
     virtual void follow(const Model& model, const Ground& ground, const State& state) = 0;
     /// Copies the particles back.
     virtual void fetch(State& state) = 0;
+    /// Copies positions, velocities, ids, and what is held or asleep, within the device.
+    virtual void keep(const StateSummary& state) = 0;
+    /// Copies that back; `state` has the count that keep() was given.
+    virtual void fetch_kept(State& state) = 0;
+    /// Over all particles.
+    [[nodiscard]] virtual Motion count_motion(const StateSummary& state, const MotionCount& count) const = 0;
 
     virtual void release_held(const Model& model, State& state) = 0;
     virtual void apply_drag(const Model& model, const Ground& ground, State& state) = 0;
@@ -56,6 +69,7 @@ class Backend {
     [[nodiscard]] virtual std::string name() const = 0;
     /// Allocated on the device.
     [[nodiscard]] virtual std::size_t bytes() const = 0;
+    [[nodiscard]] virtual Traffic traffic() const = 0;
     /// Mean number of neighbours of an awake particle in the last step.
     [[nodiscard]] virtual double mean_neighbours() const = 0;
 };

@@ -1,79 +1,30 @@
 #pragma once
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 #include <cstdint>
 #include <limits>
-#include <string>
 #include <vector>
 
-#include "sim/compression.hpp"
-#include "sim/device/array.hpp"
-#include "sim/device/backend.hpp"
 #include "sim/device/pair_kernels.hpp"
 #include "sim/device/particle_kernels.hpp"
+#include "sim/device/reductions.hpp"
+#include "sim/device/resident.hpp"
 #include "sim/device/search_kernels.hpp"
 #include "sim/device/stress_kernels.hpp"
-#include "sim/device/views.hpp"
 
 namespace talus::sim::device {
-
-struct CompressionOf {
-    const float *compression{}, *before{};
-
-    TALUS_DEVICE CompressionSum operator()(std::uint32_t i) const {
-        CompressionSum own;
-        own.add(compression[i], before[i]);
-        return own;
-    }
-};
-struct JoinCompression {
-    TALUS_DEVICE CompressionSum operator()(const CompressionSum& a, const CompressionSum& b) const { return a + b; }
-};
-struct IsAwake {
-    const std::uint8_t* asleep;
-
-    TALUS_DEVICE std::uint32_t operator()(std::uint32_t i) const { return asleep[i] == 0 ? 1 : 0; }
-};
-struct CountOf {
-    const std::uint32_t* counts;
-
-    TALUS_DEVICE std::uint64_t operator()(std::uint32_t i) const { return counts[i]; }
-};
-struct Add {
-    template <class Number>
-    TALUS_DEVICE Number operator()(const Number& a, const Number& b) const {
-        return a + b;
-    }
-};
-/// The greater of two; NaN takes precedence, or it would be missed.
-struct GreaterOrUnknown {
-    TALUS_DEVICE float operator()(float a, float b) const { return a != a || b <= a ? a : b; }
-};
 
 /// The stages on what an executor runs (host_executor.hpp has its interface). Lists of neighbours, cells and columns
 /// grow when debris needs more than ever before; nothing else is allocated after follow().
 template <class Executor>
-class BackendOn final : public Backend {
+class BackendOn final : public Resident<Executor> {
+    using Here = Resident<Executor>;
+    using Here::bounds, Here::data_, Here::executor_, Here::list_start_, Here::needs_, Here::reorder;
+    template <class T>
+    using Memory = Array<T, Executor>;
+
   public:
-    void follow(const Model& model, const Ground& ground, const State& state) override {
-        follow_model(model);
-        follow_ground(ground);
-        reserve(needs_of(model, ground), state.room());
-#define TALUS_UPLOAD(array, element, name) upload(state.name, state.count, name##_);
-        TALUS_PARTICLE_ARRAYS(TALUS_UPLOAD)
-#undef TALUS_UPLOAD
-        density_of_id_.upload(state.density_of_id);
-        data_.state.density_of_id = {density_of_id_.data(), state.density_of_id.size()};
-    }
-
-    void fetch(State& state) override {
-#define TALUS_DOWNLOAD(array, element, name) download(name##_, state.count, state.name);
-        TALUS_PARTICLE_ARRAYS(TALUS_DOWNLOAD)
-#undef TALUS_DOWNLOAD
-    }
-
     void release_held(const Model&, State& state) override {
         executor_.for_each(state.count, ReleaseHeld{data_, state.time});
     }
@@ -225,19 +176,13 @@ class BackendOn final : public Backend {
         executor_.for_each(state.count, MarkInside{data_, state.awake});
         const std::uint32_t kept = executor_.sum_up(data_.work.index, state.count);
         if (kept == state.count) return;
-        if (!state.building_contacts.empty()) renumber(state.building_contacts, state.count);
+        if (!state.building_contacts.empty()) renumber(state.building_contacts);
         executor_.for_each(state.count, ListMarked{data_, state.count});
         reorder(kept);
         state.outflow += state.count - kept;
         state.count = kept;
     }
 
-    [[nodiscard]] std::string name() const override {
-        return executor_.name();
-    }
-    [[nodiscard]] std::size_t bytes() const override {
-        return executor_.bytes();
-    }
     [[nodiscard]] double mean_neighbours() const override {
         if (searched_ == 0) return 0;
         return static_cast<double>(
@@ -246,18 +191,6 @@ class BackendOn final : public Backend {
     }
 
   private:
-    template <class T>
-    using Memory = Array<T, Executor>;
-
-    /// What only some runs need.
-    struct Needs {
-        bool stress = true, resistance = false, walls = false;
-    };
-    static Needs needs_of(const Model& model, const Ground& ground) {
-        return {model.solver.internal_friction == params::InternalFriction::stress, resists_by_particle(model),
-                !ground.solids.empty()};
-    }
-
     static float softness(const Model& model) {
         return static_cast<float>(model.solver.constraint_relaxation * model.kernel.rest_gradient_sum);
     }
@@ -271,111 +204,6 @@ class BackendOn final : public Backend {
         } else {
             f(PairKernel<ChosenSmoothing>{{model.kernel.choice}, scale});
         }
-    }
-
-    void follow_model(const Model& model) {
-        std::vector<ReleaseView> releases;
-        for (const ReleaseGroup& release : model.releases) {
-            releases.push_back(
-                {release.start_time, release.first_particle, release.last_particle, release.pore_pressure_ratio});
-        }
-        releases_.upload(releases);
-        const BoundaryNodes tables = model.boundary.nodes();
-        const auto keep = [](Memory<Quad>& memory, const Quad* from, int count) {
-            memory.upload({from, static_cast<std::size_t>(count)});
-            return memory.data();
-        };
-        static_cast<ModelValues&>(data_.model) = model;
-        data_.model.releases = {releases_.data(), releases.size()};
-        data_.model.boundary = tables;
-        data_.model.boundary.nodes = keep(boundary_nodes_, tables.nodes, tables.node_count);
-        data_.model.boundary.by_slope = keep(by_slope_, tables.by_slope, tables.by_slope_count);
-        data_.model.boundary.sticking = keep(sticking_, tables.sticking, tables.sticking_count);
-        data_.model.cover = model.cover.field();
-        if (!model.cover.empty()) {
-            cover_.upload(model.cover.cells());
-            data_.model.cover.cells = cover_.data();
-        }
-    }
-
-    void follow_ground(const Ground& ground) {
-        data_.ground.terrain = ground.terrain.field();
-        terrain_.upload({ground.terrain.field().nodes, ground.terrain.elevation().values.size()});
-        data_.ground.terrain.nodes = terrain_.data();
-        terrain::SolidWalls walls = ground.solids.walls();
-        if (!ground.solids.empty()) {
-            edges_.upload(ground.solids.edges());
-            solids_.upload(ground.solids.solids());
-            bin_starts_.upload(ground.solids.bins().starts());
-            bin_items_.upload(ground.solids.bins().items());
-        }
-        walls.edges = edges_.data();
-        walls.solids = solids_.data();
-        walls.bins.start = bin_starts_.data();
-        walls.bins.items = bin_items_.data();
-        data_.ground.solids = walls;
-    }
-
-    void reserve(const Needs& needs, std::size_t room) {
-        needs_ = needs;
-#define TALUS_RESERVE(array, element, name) \
-    name##_.reserve(room);                  \
-    data_.state.name = name##_.data();
-        TALUS_PARTICLE_ARRAYS(TALUS_RESERVE)
-#undef TALUS_RESERVE
-#define TALUS_RESERVE(element, name, when)      \
-    if (when) work_##name##_.reserve(room + 1); \
-    data_.work.name = work_##name##_.data();
-        TALUS_DEVICE_ARRAYS(TALUS_RESERVE)
-#undef TALUS_RESERVE
-        list_start_.reserve(room / list_width + 2);
-    }
-
-    template <class T, class From>
-    void upload(const From& from, std::size_t count, Memory<T>& to) {
-        staging_.resize(count * sizeof(T));
-        T* const packed = reinterpret_cast<T*>(staging_.data());
-        for (std::size_t i = 0; i < count; ++i) {
-            if constexpr (
-                requires { from.at(i); } && !requires { from.data(); }) {
-                packed[i] = from.at(i);
-            } else {
-                packed[i] = from[i];
-            }
-        }
-        executor_.upload(to.data(), packed, count * sizeof(T));
-    }
-    template <class T, class To>
-    void download(const Memory<T>& from, std::size_t count, To& to) {
-        staging_.resize(count * sizeof(T));
-        const T* const packed = reinterpret_cast<const T*>(staging_.data());
-        executor_.download(staging_.data(), from.data(), count * sizeof(T));
-        for (std::size_t i = 0; i < count; ++i) {
-            if constexpr (requires { to.set(i, packed[i]); }) {
-                to.set(i, packed[i]);
-            } else {
-                to[i] = packed[i];
-            }
-        }
-    }
-
-    /// Puts the first `count` particles of `order` first, in that order.
-    void reorder(std::size_t count) {
-        gathered_.reserve(count * sizeof(Deviator<float>));
-#define TALUS_GATHER(array, element, name) gather(name##_, count);
-        TALUS_PARTICLE_ARRAYS(TALUS_GATHER)
-#undef TALUS_GATHER
-    }
-    template <class T>
-    void gather(Memory<T>& memory, std::size_t count) {
-        static_assert(sizeof(T) <= sizeof(Deviator<float>));
-        T* const to = reinterpret_cast<T*>(gathered_.data());
-        executor_.for_each(count, Gather<T>{memory.data(), to, data_.work.order});
-        executor_.copy(memory.data(), to, count * sizeof(T));
-    }
-
-    [[nodiscard]] Bounds bounds(const State& state, float time_step) const {
-        return executor_.template reduce<Bounds>(state.count, Bounds{}, BoundsOf{data_, time_step}, JoinBounds{});
     }
 
     [[nodiscard]] ColumnBox column_box(const Model& model, const Bounds& all) {
@@ -415,38 +243,18 @@ class BackendOn final : public Backend {
     }
 
     /// Contacts of particles that stay get their new indices, as `index` has them; the others are dropped.
-    void renumber(std::vector<BuildingContact>& contacts, std::uint32_t count) {
-        std::vector<std::uint32_t> index(count + std::size_t{1});
-        executor_.download(index.data(), data_.work.index, index.size() * sizeof(std::uint32_t));
-        std::erase_if(contacts, [&](const BuildingContact& c) { return index[c.particle + 1] == index[c.particle]; });
-        for (BuildingContact& contact : contacts) contact.particle = index[contact.particle];
+    void renumber(std::vector<BuildingContact>& contacts) {
+        executor_.for_each(contacts.size(), RenumberImpacts{data_, impacts_.data()});
+        impacts_.download(contacts);
+        std::erase_if(contacts, [](const BuildingContact& c) { return c.particle == RenumberImpacts::gone; });
     }
 
-    mutable Executor executor_;  // reading a sum takes memory of the device
-    Data data_{};
-    Needs needs_;
     CellBox box_{Bounds{0, 0, 0, 0, 0, 0}, 1};
     std::uint32_t searched_ = 0;
-    std::vector<std::byte> staging_;
-
-#define TALUS_MEMBER(array, element, name) Memory<element> name##_{executor_};
-    TALUS_PARTICLE_ARRAYS(TALUS_MEMBER)
-#undef TALUS_MEMBER
-#define TALUS_MEMBER(element, name, when) Memory<element> work_##name##_{executor_};
-    TALUS_DEVICE_ARRAYS(TALUS_MEMBER)
-#undef TALUS_MEMBER
-    Memory<float> density_of_id_{executor_};
-    Memory<ReleaseView> releases_{executor_};
-    Memory<Quad> boundary_nodes_{executor_}, by_slope_{executor_}, sticking_{executor_};
-    Memory<Quad> cover_{executor_}, terrain_{executor_};
-    Memory<terrain::WallEdge> edges_{executor_};
-    Memory<terrain::WallSolid> solids_{executor_};
-    Memory<std::uint32_t> bin_starts_{executor_}, bin_items_{executor_};
-    Memory<std::byte> gathered_{executor_};
     Memory<std::uint64_t> cell_key_{executor_};
     Memory<std::uint32_t> cell_start_{executor_};
     Memory<CellRows> cell_rows_{executor_};
-    Memory<std::uint32_t> list_start_{executor_}, neighbour_{executor_};
+    Memory<std::uint32_t> neighbour_{executor_};
     Memory<std::uint32_t> columns_{executor_};
     Memory<BuildingContact> impacts_{executor_};
 };

@@ -72,10 +72,13 @@ class CudaExecutor {
         (void)cudaFree(memory);
         bytes_ -= bytes;
     }
-    static void upload(void* to, const void* from, std::size_t bytes) {
+    [[nodiscard]] Traffic traffic() const { return traffic_; }
+    void upload(void* to, const void* from, std::size_t bytes) {
+        traffic_.to_device += bytes;
         if (bytes > 0) check(cudaMemcpy(to, from, bytes, cudaMemcpyHostToDevice));
     }
-    static void download(void* to, const void* from, std::size_t bytes) {
+    void download(void* to, const void* from, std::size_t bytes) {
+        traffic_.to_host += bytes;
         if (bytes > 0) check(cudaMemcpy(to, from, bytes, cudaMemcpyDeviceToHost));
     }
     static void copy(void* to, const void* from, std::size_t bytes) {
@@ -142,6 +145,7 @@ class CudaExecutor {
     }
 
     std::size_t bytes_ = 0, scratch_size_ = 0;
+    Traffic traffic_;
     void* scratch_ = nullptr;
 };
 

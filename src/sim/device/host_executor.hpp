@@ -8,11 +8,13 @@
 #include <string>
 #include <vector>
 
+#include "sim/device/backend.hpp"
 #include "simd/parallel.hpp"
 
 namespace talus::sim::device {
 
-/// Runs kernels as plain loops over the threads of the processor. Results do not depend on their number.
+/// Runs kernels as plain loops over the threads of the processor. Results do not depend on their number. Counts the
+/// bytes that a card would copy.
 class HostExecutor {
   public:
     [[nodiscard]] static std::string name() { return "host"; }
@@ -26,8 +28,15 @@ class HostExecutor {
         bytes_ -= bytes;
         ::operator delete(memory, alignment);
     }
-    static void upload(void* to, const void* from, std::size_t bytes) { copy(to, from, bytes); }
-    static void download(void* to, const void* from, std::size_t bytes) { copy(to, from, bytes); }
+    [[nodiscard]] Traffic traffic() const { return traffic_; }
+    void upload(void* to, const void* from, std::size_t bytes) {
+        traffic_.to_device += bytes;
+        copy(to, from, bytes);
+    }
+    void download(void* to, const void* from, std::size_t bytes) {
+        traffic_.to_host += bytes;
+        copy(to, from, bytes);
+    }
     static void copy(void* to, const void* from, std::size_t bytes) {
         if (bytes > 0) std::memcpy(to, from, bytes);
     }
@@ -41,10 +50,10 @@ class HostExecutor {
     }
     /// The values kernel(i) joined; in a fixed order.
     template <class Value, class Kernel, class Join>
-    [[nodiscard]] static Value reduce(std::size_t count, const Value& identity, const Kernel& kernel,
-                                      const Join& join) {
+    [[nodiscard]] Value reduce(std::size_t count, const Value& identity, const Kernel& kernel, const Join& join) {
+        traffic_.to_host += (count + reduce_span - 1) / reduce_span * sizeof(Value);  // as a card
         return simd::reduce_ranges(
-            count, 4096, identity,
+            count, reduce_span, identity,
             [&](std::size_t first, std::size_t last, Value value) {
                 for (std::size_t i = first; i < last; ++i) value = join(value, kernel(static_cast<std::uint32_t>(i)));
                 return value;
@@ -52,7 +61,8 @@ class HostExecutor {
             join);
     }
     /// Every value becomes the sum of those before it; the sum of all stands behind them, and is returned.
-    static std::uint32_t sum_up(std::uint32_t* values, std::size_t count) {
+    std::uint32_t sum_up(std::uint32_t* values, std::size_t count) {
+        traffic_.to_host += sizeof *values;
         std::uint32_t sum = 0;
         for (std::size_t i = 0; i < count; ++i) {
             const std::uint32_t here = values[i];
@@ -75,7 +85,9 @@ class HostExecutor {
 
   private:
     static constexpr std::align_val_t alignment{64};
+    static constexpr std::size_t reduce_span = 4096;
     std::size_t bytes_ = 0;
+    Traffic traffic_;
 };
 
 }  // namespace talus::sim::device

@@ -48,14 +48,7 @@ struct UpdateMultipliers {
         const Vec3<float> p = d.work.place[i].vector(), moved = d.work.moved[i].vector();
         PairSums sums;
         sums.density = pair.value(0);
-        d.neighbours.for_each(i, [&](std::uint32_t j) {
-            const Vec3<float> separation = p - d.work.place[j].vector();
-            const float square = dot(separation, separation), distance = sqrtf(square);
-            const float slope = pair.slope(distance);
-            sums.density += pair.value(distance);
-            sums.square += slope * slope * square;
-            sums.gradient += separation * slope;
-        });
+        d.neighbours.for_each(i, [&](std::uint32_t j) { sums.add(pair, p - d.work.place[j].vector()); });
         const BoundaryShare boundary = sample_boundary_of(d, i, p, moved);
         const float compression = sums.density + boundary.density - 1;
         const float before = d.state.multiplier[i];

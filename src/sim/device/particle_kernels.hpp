@@ -359,6 +359,18 @@ struct MarkInside {
     }
 };
 
+/// The particles of impacts, where those that leave are left out as `index` says.
+struct RenumberImpacts {
+    static constexpr std::uint32_t gone = 0xffffffff;
+    Data d;
+    BuildingContact* impacts{};
+
+    TALUS_DEVICE void operator()(std::uint32_t k) const {
+        const std::uint32_t i = impacts[k].particle, at = d.work.index[i];
+        impacts[k].particle = d.work.index[i + 1] > at ? at : gone;
+    }
+};
+
 /// Lists the marked ones in their order.
 struct ListMarked {
     Data d;

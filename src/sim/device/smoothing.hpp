@@ -60,6 +60,18 @@ struct PairKernel {  // NOLINT(cppcoreguidelines-pro-type-member-init): the scal
 struct PairSums {
     float density = 0, square = 0, divergence = 0;
     Vec3<float> gradient;
+
+    /// Adds a pair; returns its gradient.
+    template <class Smoothing>
+    TALUS_DEVICE Vec3<float> add(const PairKernel<Smoothing>& pair, const Vec3<float>& separation) {
+        const float distance_square = dot(separation, separation), distance = sqrtf(distance_square);
+        const float slope = pair.slope(distance);
+        const Vec3<float> own = separation * slope;
+        density += pair.value(distance);
+        square += slope * slope * distance_square;
+        gradient += own;
+        return own;
+    }
 };
 
 }  // namespace talus::sim::device

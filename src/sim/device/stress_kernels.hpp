@@ -39,13 +39,7 @@ struct Linearise {
         PairSums sums;
         sums.density = pair.value(0);
         d.neighbours.for_each(i, [&](std::uint32_t j) {
-            const Vec3<float> separation = p - d.work.place[j].vector();
-            const float square = dot(separation, separation), distance = sqrtf(square);
-            const float slope = pair.slope(distance);
-            const Vec3<float> gradient = separation * slope;
-            sums.density += pair.value(distance);
-            sums.square += slope * slope * square;
-            sums.gradient += gradient;
+            const Vec3<float> gradient = sums.add(pair, p - d.work.place[j].vector());
             sums.divergence += dot(d.work.moved[j].vector() - moved, gradient);
         });
         const BoundaryShare boundary = sample_boundary_of(d, i, p, moved);
