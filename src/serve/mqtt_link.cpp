@@ -128,17 +128,17 @@ void MqttLink::Parts::set_callbacks() {
 }
 
 int MqttLink::Parts::serve_once(bool first) {
-    using Clock = std::chrono::steady_clock;
+    using std::chrono::steady_clock;
     constexpr int keep_alive = 30, wait = 200;  // s, ms
     // Over TLS the library's loop does not notice that a connection was refused.
-    const auto latest_answer = Clock::now() + settings.answer_limit;
+    const auto latest_answer = steady_clock::now() + settings.answer_limit;
     int code = first ? mosquitto_connect_async(client, settings.host.c_str(), settings.port, keep_alive)
                      : mosquitto_reconnect_async(client);
     while (code == MOSQ_ERR_SUCCESS) {
         {
             const std::lock_guard lock(mutex);
             if (ending) return code;
-            if (!connected && Clock::now() > latest_answer) {
+            if (!connected && steady_clock::now() > latest_answer) {
                 if (failure.empty()) failure = "no answer";
                 return MOSQ_ERR_CONN_LOST;
             }
