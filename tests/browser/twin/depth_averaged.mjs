@@ -63,8 +63,11 @@ export async function testDepthAveraged(run) {
   });
 
   await run.check("both models have one scale, and the map is the model's own", async () => {
-    const clip = await page.locator(".stage canvas").boundingBox();
+    // Below the bars: the chosen layer's name is no part of the map.
+    const view = await page.locator(".stage canvas").boundingBox();
+    const clip = { x: view.x + 0.1 * view.width, y: view.y + 0.4 * view.height, width: 0.8 * view.width, height: 0.5 * view.height };
     const of_model = { scale: await scale("Peak depth, depth-averaged"), ...await run.still(page, clip) };
+    assert.ok(run.requests.some((url) => /scenarios\/A\/depth_averaged\/layers\/peak_depth/.test(url)), "the map is asked of the model");
     await page.selectOption("select[aria-label^='Map layer']", "peak_depth");
     const of_particles = await run.changed(page, clip, [of_model.hash], "the particles' map");
     assert.equal(await scale("Peak depth"), of_model.scale);
