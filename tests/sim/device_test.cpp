@@ -182,8 +182,17 @@ TEST(Device, takes_up_what_a_user_changes_between_two_steps) {
     EXPECT_NEAR(summary_of(simulation.state()).centre.y, before.centre.y + 1, 0.1);
 }
 
+/// Without a bed, which needs the particles on the processor in every step.
+Simulation sliding_slab() {
+    params::SolverSpec solver;
+    solver.backend = BackendChoice::host;
+    const terrain::Terrain terrain = testing::inclined_plane(30);
+    return testing::simulate({}, solver, terrain, {testing::block(terrain, testing::rectangle(10, 10, 30, 30), 1)},
+                             0.5);
+}
+
 TEST(Device, keeps_a_copy_of_the_particles_for_a_later_fault) {
-    Simulation simulation = busy(BackendChoice::host);
+    Simulation simulation = sliding_slab();
     for (int i = 0; i < 3; ++i) ASSERT_TRUE(simulation.advance());
     simulation.keep();
     const State then = simulation.state();
@@ -197,11 +206,7 @@ TEST(Device, keeps_a_copy_of_the_particles_for_a_later_fault) {
 }
 
 TEST(Device, counts_what_moves_without_copying_it) {
-    params::SolverSpec solver;
-    solver.backend = BackendChoice::host;
-    const terrain::Terrain terrain = testing::inclined_plane(30);
-    Simulation slab =
-        testing::simulate({}, solver, terrain, {testing::block(terrain, testing::rectangle(10, 10, 30, 30), 1)}, 0.5);
+    Simulation slab = sliding_slab();
     for (int i = 0; i < 20; ++i) ASSERT_TRUE(slab.advance());
     const std::uint64_t before = slab.device_traffic().to_host;
     const double speed = slab.summary().max_speed / 2;
