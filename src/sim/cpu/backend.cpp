@@ -77,7 +77,7 @@ void Backend::predict_positions(const Model& model, const Ground& ground, State&
 }
 
 void Backend::count_columns(const Model& model, const Ground& ground, const State& state) {
-    columns_.count(state.position, state.count, column_width(model));
+    columns_.count(state.position, std::span(state.asleep).first(state.count), column_width(model));
     simd::parallel_ranges(state.count, particle_grain, [&](std::size_t first, std::size_t last) {
         for (std::size_t i = first; i < last; ++i) {
             if (state.asleep[i] || state.held[i]) continue;

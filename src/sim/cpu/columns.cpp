@@ -29,14 +29,15 @@ void clear(Array& array, std::size_t count) {
     });
 }
 
-/// The range of finite values.
-std::array<float, 2> range_of(const std::vector<float>& values, std::size_t count) {
+/// The range of finite values that are not asleep; from high to low where all are.
+std::array<float, 2> range_of(const std::vector<float>& values, std::span<const std::uint8_t> asleep) {
     using Range = std::array<float, 2>;
     constexpr float highest = std::numeric_limits<float>::max();
     return simd::reduce_ranges(
-        count, 4096, Range{highest, -highest},
+        asleep.size(), 4096, Range{highest, -highest},
         [&](std::size_t first, std::size_t last, Range range) {
             for (std::size_t i = first; i < last; ++i) {
+                if (asleep[i] != 0) continue;
                 range[0] = std::min(range[0], values[i]);
                 range[1] = std::max(range[1], values[i]);
             }
@@ -57,9 +58,10 @@ void Columns::for_each_column(float x, float y, const F& f) const {
 }
 
 /// Chooses between box and hash, and empties the columns.
-void Columns::frame(const VectorArray& points, std::size_t count) {
+void Columns::frame(const VectorArray& points, std::span<const std::uint8_t> asleep) {
     const auto along = [&](const std::vector<float>& values, std::int64_t& first, std::int64_t& size) {
-        const auto [low, high] = range_of(values, count);
+        const auto [low, high] = range_of(values, asleep);
+        if (low > high) return;
         first = whole_below(low * inverse_width_ - 0.5);
         size = whole_below(high * inverse_width_ - 0.5) + 2 - first;
     };
@@ -72,16 +74,17 @@ void Columns::frame(const VectorArray& points, std::size_t count) {
     clear(sums_, hashed_ ? keys_.size() : static_cast<std::size_t>(size_.column * size_.row));
 }
 
-void Columns::count(const VectorArray& points, std::size_t count, double width) {
+void Columns::count(const VectorArray& points, std::span<const std::uint8_t> asleep, double width) {
     if (sums_.empty()) sums_ = std::vector<std::atomic<std::uint32_t>>(columns_per_particle * capacity_);
     inverse_width_ = 1 / width;
     size_ = {};
     hashed_ = false;
-    if (count == 0) return;
-    frame(points, count);
-    simd::parallel_ranges(count, grain, [&](std::size_t first, std::size_t last) {
+    frame(points, asleep);
+    if (size_.column == 0) return;
+    simd::parallel_ranges(asleep.size(), grain, [&](std::size_t first, std::size_t last) {
         for (std::size_t i = first; i < last; ++i) {
             for_each_column(points.x[i], points.y[i], [&](Place place, float share) {
+                if (asleep[i] != 0 && in_box(place) == nowhere) return;
                 const std::uint32_t units = column_units(share);
                 if (units != 0) sums_[find_or_keep(place)].fetch_add(units, std::memory_order_relaxed);
             });

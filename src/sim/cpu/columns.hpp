@@ -2,6 +2,7 @@
 
 #include <atomic>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "sim/state.hpp"
@@ -11,16 +12,18 @@ namespace talus::sim::cpu {
 /// The number of particles above each place in plan: a grid of columns, rebuilt in each step. Shares of particles are
 /// whole numbers, so that sums do not depend on the number of threads.
 ///
-/// Debris is near together in plan as a rule: the grid is then an array over its bounding box. Where the box has many
-/// more columns than there are particles, the columns that hold any are found by hashing.
+/// Debris that moves is near together in plan as a rule: the grid is then an array over its bounding box, and debris
+/// at rest elsewhere does not count. Where the box has many more columns than there are particles, the columns that
+/// hold any are found by hashing.
 class Columns {
   public:
     explicit Columns(std::size_t capacity) : capacity_(capacity) {}
 
-    /// Distributes finite `points` over the centres of columns that are `width` wide, m. The first call allocates the
-    /// memory.
-    void count(const VectorArray& points, std::size_t count, double width);
-    /// Particles in a column at a place, interpolated between the centres of columns.
+    /// Distributes the first finite points over the centres of columns that are `width` wide, m: one for each element
+    /// of `asleep`, 1 where nobody will ask at that point. The first call allocates the memory.
+    void count(const VectorArray& points, std::span<const std::uint8_t> asleep, double width);
+    /// Particles in a column at a place, interpolated between the centres of columns. It must lie between points that
+    /// are not asleep.
     [[nodiscard]] float particles_at(float x, float y) const;
 
   private:
@@ -31,7 +34,7 @@ class Columns {
 
     template <class F>
     void for_each_column(float x, float y, const F& f) const;
-    void frame(const VectorArray& points, std::size_t count);
+    void frame(const VectorArray& points, std::span<const std::uint8_t> asleep);
     /// Where the sum of a column is kept, or `nowhere`.
     [[nodiscard]] std::size_t find(Place place) const;
     /// The same; if the columns are hashed, it is kept from now on.

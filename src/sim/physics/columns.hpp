@@ -1,6 +1,5 @@
 #pragma once
 
-#include <cmath>
 #include <cstdint>
 
 #include "core/number.hpp"
@@ -12,7 +11,7 @@ namespace talus::sim {
 inline constexpr float units_per_particle = 65536;
 
 [[nodiscard]] TALUS_DEVICE inline std::uint32_t column_units(float share) {
-    return static_cast<std::uint32_t>(std::lround(static_cast<double>(share * units_per_particle)));
+    return static_cast<std::uint32_t>(static_cast<double>(share * units_per_particle) + 0.5);
 }
 
 /// As std::floor, which is a call without SSE4.1.
