@@ -35,11 +35,12 @@ export async function testErosion(run) {
   const clip = { x: box.x + 0.2 * box.width, y: box.y + 0.25 * box.height, width: 0.65 * box.width, height: 0.45 * box.height };
   let deepest, before, layer;
 
-  /** The read-out's height of the ground right below a share of the view. */
-  const heightAt = async (u, v) => {
+  /** The read-out's height of the ground in the middle of a plan, which lies below the bars. */
+  const heightInTheMiddle = async () => {
+    const bars = await page.evaluate(() => Number.parseFloat(document.querySelector(".middle").style.getPropertyValue("--bars")));
     await page.mouse.move(1, 1); // away from the canvas, which clears it
     await until(() => page.textContent(".read-out"), (t) => t === "", "no read-out");
-    await page.mouse.move(box.x + u * box.width, box.y + v * box.height);
+    await page.mouse.move(box.x + box.width / 2, box.y + (bars + box.height) / 2);
     const text = await until(() => page.textContent(".read-out"), (t) => /ground/.test(t), "the read-out");
     return Number(/ground (\S+) m/.exec(text)[1]);
   };
@@ -49,7 +50,7 @@ export async function testErosion(run) {
   await run.check("the ground sinks where debris entrains its bed, as far as the server says", async () => {
     await page.click("[aria-label='Top view']");
     assert.equal(await offered(), false, "nothing was entrained, so there is no map of it");
-    before = { ...await run.still(page, clip), path: await path(), height: await heightAt(0.5, 0.5) };
+    before = { ...await run.still(page, clip), path: await path(), height: await heightInTheMiddle() };
     // No faster than in reality, so that it is still under way when it is paused: a scenario B does not run then.
     await page.selectOption("select[aria-label^=Speed]", "1");
     await page.click(".run");
@@ -66,7 +67,7 @@ export async function testErosion(run) {
     assert.ok(before.path > 1e-3, `${before.path} of the view is the flow path`);
     await until(path, (share) => share > 0.8 * before.path, `the flow path, which was ${before.path} of the view`);
     await run.shot(page, "45-sunk-ground");
-    await until(() => heightAt(0.5, 0.5), (height) => height < before.height - 0.1 && height > before.height - deepest.most - 0.1, `the height, which was ${before.height} m`);
+    await until(heightInTheMiddle, (height) => height < before.height - 0.1 && height > before.height - deepest.most - 0.1, `the height, which was ${before.height} m`);
   });
 
   await run.check("erosion is a map layer with a legend in metres, and among the exports", async () => {
@@ -118,7 +119,7 @@ export async function testErosion(run) {
     await until(state, (s) => s.time_s === 0, "time 0");
     await until(sunk, (depth) => depth === 0, "the old ground");
     await run.back(page, clip, before, "looks as before");
-    await until(() => heightAt(0.5, 0.5), (height) => height === before.height, `the height, which was ${before.height} m`);
+    await until(heightInTheMiddle, (height) => height === before.height, `the height, which was ${before.height} m`);
   });
   await page.context().close();
   await own.stop();
