@@ -1,6 +1,6 @@
 // Debris that entrains its bed: the ground sinks under it, on the page too, as far as at the time on display, and a restart
 // brings it back. On a server and a scene of its own: the shipped ones have no bed.
-import { assert, boxOf, inControl, pause, saved, until, unzipped, viewClip } from "./harness.mjs";
+import { assert, boxOf, inControl, middleOfPlan, pause, saved, until, unzipped, viewClip } from "./harness.mjs";
 import { writeGully } from "./gully.mjs";
 
 /** Grid message of docs/protocol.md: where the largest value is, and how large. */
@@ -35,12 +35,11 @@ export async function testErosion(run) {
   const clip = { x: box.x + 0.2 * box.width, y: box.y + 0.25 * box.height, width: 0.65 * box.width, height: 0.45 * box.height };
   let deepest, before, layer;
 
-  /** The read-out's height of the ground in the middle of a plan, which lies below the bars. */
+  /** The read-out's height of the ground in the middle of a plan. */
   const heightInTheMiddle = async () => {
-    const bars = await page.evaluate(() => Number.parseFloat(document.querySelector(".middle").style.getPropertyValue("--bars")));
     await page.mouse.move(1, 1); // away from the canvas, which clears it
     await until(() => page.textContent(".read-out"), (t) => t === "", "no read-out");
-    await page.mouse.move(box.x + box.width / 2, box.y + (bars + box.height) / 2);
+    await page.mouse.move(box.x + box.width / 2, await middleOfPlan(page));
     const text = await until(() => page.textContent(".read-out"), (t) => /ground/.test(t), "the read-out");
     return Number(/ground (\S+) m/.exec(text)[1]);
   };

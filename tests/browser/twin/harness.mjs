@@ -229,6 +229,12 @@ export async function viewClip(page, scenario) {
   const box = await page.locator(scenario ? `.pane[data-scenario=${scenario}]` : ".stage canvas").boundingBox();
   return { x: box.x + 0.1 * box.width, y: box.y + 0.25 * box.height, width: 0.8 * box.width, height: 0.5 * box.height };
 }
+/** The height in the page, px, of the middle of a plan: it lies below the bars. */
+export async function middleOfPlan(page) {
+  const box = await boxOf(page.locator(".stage canvas"));
+  const bars = await page.evaluate(() => Number.parseFloat(document.querySelector(".middle").style.getPropertyValue("--bars")));
+  return box.y + (bars + box.height) / 2;
+}
 /** A click on the ground at a share of the canvas. */
 export async function clickGround(page, u, v, options = {}) {
   const box = await page.locator(".stage canvas").boundingBox();

@@ -1,7 +1,7 @@
 // The scene's orthophoto over the terrain, on a server of its own: the shipped scene has none.
 import { writeFileSync } from "node:fs";
 import { join } from "node:path";
-import { assert, viewClip } from "./harness.mjs";
+import { assert, middleOfPlan, viewClip } from "./harness.mjs";
 
 /** A picture of squares with a world file beside it, over an extent; its north-western quarter is red. */
 function writePhoto(file, [west, south, east, north], size = 96) {
@@ -40,9 +40,10 @@ export async function testPhoto(run) {
     await page.locator("label:has-text('Photo') input").check();
     await run.changed(page, clip, [plain.hash], "the photo");
     await run.shot(page, "20-photo");
-    const half = (left, top) => run.reddish(page, { x: clip.x + (left ? 0.2 : 0.55) * clip.width, y: clip.y + (top ? 0 : 0.6) * clip.height, width: 0.2 * clip.width, height: 0.35 * clip.height });
-    assert.ok((await half(true, true)) > 0.8, "the north-western quarter is red");
-    for (const [left, top] of [[false, true], [true, false], [false, false]]) assert.ok((await half(left, top)) < 0.1, `${left} ${top}`);
+    const middle = await middleOfPlan(page), height = 0.3 * clip.height;
+    const quarter = (left, top) => run.reddish(page, { x: clip.x + (left ? 0.2 : 0.55) * clip.width, y: middle + (top ? -1.2 : 0.2) * height, width: 0.2 * clip.width, height });
+    assert.ok((await quarter(true, true)) > 0.8, "the north-western quarter is red");
+    for (const [left, top] of [[false, true], [true, false], [false, false]]) assert.ok((await quarter(left, top)) < 0.1, `${left} ${top}`);
     await page.locator("label:has-text('Photo') input").uncheck();
     await run.back(page, clip, plain, "the ground without it");
   });
