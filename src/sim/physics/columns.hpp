@@ -10,14 +10,14 @@ namespace talus::sim {
 /// Shares of particles are counted in whole units, so that sums do not depend on the order of the particles.
 inline constexpr float units_per_particle = 65536;
 
-[[nodiscard]] TALUS_DEVICE inline std::uint32_t column_units(float share) {
-    return static_cast<std::uint32_t>(static_cast<double>(share * units_per_particle) + 0.5);
-}
-
 /// As std::floor, which is a call without SSE4.1.
 [[nodiscard]] TALUS_DEVICE inline std::int64_t whole_below(double x) {
     const auto whole = static_cast<std::int64_t>(x);
     return whole - (static_cast<double>(whole) > x ? 1 : 0);
+}
+
+[[nodiscard]] TALUS_DEVICE inline std::uint32_t column_units(float share) {
+    return static_cast<std::uint32_t>(whole_below(static_cast<double>(share * units_per_particle) + 0.5));
 }
 
 /// Calls f(column, row, share) for the four columns whose centres surround a place, each with its share by bilinear
