@@ -68,7 +68,7 @@ Result<calibrate::CalibrationPlan> read_arguments(const CalibrateArguments& argu
             return Error{fmt::format("--search-with {} is refused; it must be depth_averaged", arguments.search_with)};
         }
         plan.search.runs = calibrate::runs_beside_fast;
-        plan.search.fast_runs = arguments.fast_runs.value_or(calibrate::usual_fast_runs);
+        plan.search.fast_runs = arguments.fast_runs.value_or(calibrate::default_fast_runs);
     } else if (arguments.fast_runs) {
         return Error{"--fast-runs is for --search-with depth_averaged, which is not given"};
     }

@@ -49,8 +49,8 @@ sessions. talus without arguments does the same at a desktop. With a scene or a 
 Only this computer can reach it. Own scenes, saved sessions and the list of recent scenes are kept in
 $XDG_DATA_HOME/talus, by default ~/.local/share/talus.
 
-A scene with [[trigger]] and [[alarm]] starts runs when a program or a gauge says so, and tells others what is coming,
-with the same options as talus serve: docs/triggers.md. They are used for every scene that has them.
+A scene with [[trigger]] starts runs when a program or a gauge says so, one with [[alarm]] tells others what is coming.
+The options are those of talus serve (docs/triggers.md), and apply to every scene that is opened.
   talus start my_scene.toml --trigger-token-file token.txt --mqtt 127.0.0.1 --webhook-file webhook.txt
 
 Exit codes:

@@ -23,8 +23,8 @@ struct SearchOptions {
     std::size_t fast_runs = 0;  ///< at most, of a faster model; 0: there is none
     std::uint64_t seed = 1;
 };
-/// Of a search with two models, unless it is told otherwise.
-inline constexpr std::size_t runs_beside_fast = 10, usual_fast_runs = 100;
+/// Defaults of a search with two models.
+inline constexpr std::size_t runs_beside_fast = 10, default_fast_runs = 100;
 
 /// Minimum number of runs of a search over this number of factors, which is that of the fast ones where there are such.
 [[nodiscard]] std::size_t min_runs(std::size_t factors);

@@ -63,7 +63,7 @@ MassBalance mass_balance(const observe::Observation& observation) {
 std::string place(const scene::Scene& scene, const PlanPoint& at) {
     if (!scene.flow_path.empty()) {
         if (const auto on_path = scene.flow_path.locate(at)) {
-            return fmt::format("at chainage {} m", fixed(on_path->chainage, 0));
+            return fmt::format("at chainage {}\u00a0m", fixed(on_path->chainage, 0));
         }
     }
     return fmt::format("at {} E {} N", fixed(at.x, 0), fixed(at.y, 0));
@@ -138,20 +138,20 @@ Json key_figures(const scene::Scene& scene, const run::RunResult& result) {
                           (scene.inflows.empty() ? "" : ", " + plural(scene.inflows.size(), "inflow")));
     if (!scene.bed.empty()) {
         add("entrained_volume_m3", "Entrained from the bed", mass.entrained, mass.entrained < 100 ? "f1" : "f0", "m³",
-            fmt::format("{} × the released volume, deepest {} m", fixed(mass.entrained / o.volume_released, 2),
+            fmt::format("{} × the released volume, deepest {}\u00a0m", fixed(mass.entrained / o.volume_released, 2),
                         fixed(greatest(o.erosion.depth), 2)));
     }
     const bool ran = std::isfinite(o.run_out.along_flow);
     const std::string front = std::isfinite(o.run_out.front_chainage)
-                                  ? fmt::format(", front to chainage {} m", fixed(o.run_out.front_chainage, 0))
+                                  ? fmt::format(", front to chainage {}\u00a0m", fixed(o.run_out.front_chainage, 0))
                                   : "";
     add("run_out_along_flow_m", o.run_out.at_least ? "Run-out along the flow, at least" : "Run-out along the flow",
         o.run_out.along_flow, "f0", ran ? "m" : "",
-        ran ? fmt::format("{} m in a straight line, drop {} m{}{}", fixed(o.run_out.straight, 0),
+        ran ? fmt::format("{}\u00a0m in a straight line, drop {}\u00a0m{}{}", fixed(o.run_out.straight, 0),
                           fixed(o.run_out.drop, 1), front, o.run_out.at_least ? "; debris left the terrain" : "")
             : "no debris ran out");
     add("runout_angle_deg", "Runout angle", o.run_out.runout_angle * degrees_per_radian, "f1", ran ? "°" : "",
-        ran ? fmt::format("travel angle of the centre of mass {}°",
+        ran ? fmt::format("travel angle of the centre of mass\u00a0{}°",
                           fixed(o.run_out.travel_angle * degrees_per_radian, 1))
             : "");
     const observe::Hits hits = hits_among(o.buildings, false), barriers_hit = hits_among(o.buildings, true);
@@ -204,11 +204,11 @@ Json layers(const scene::Scene& scene, const run::RunResult& result) {
                 enough ? "" : warning, enough);
 }
 
-Json convergence(const run::NumericalVerdict& verdict) {
+Json numerics(const run::NumericalVerdict& verdict) {
     if (verdict.converged == run::Answer::unknown) {
-        return fact("Convergence", verdict.text + "; talus run --convergence compares with finer numerics");
+        return fact("Numerics", verdict.text + "; talus run --convergence compares with finer numerics");
     }
-    return fact("Convergence", "", verdict.text, verdict.converged == run::Answer::yes);
+    return fact("Numerics", "", verdict.text, verdict.converged == run::Answer::yes);
 }
 
 Json quality(const scene::Scene& scene, const run::RunResult& result, const run::NumericalVerdict& verdict) {
@@ -267,7 +267,7 @@ Json quality(const scene::Scene& scene, const run::RunResult& result, const run:
                         scene.spec.solver.iteration_count, scene.spec.solver.extra_iteration_count,
                         significant(100 * c.time_share_iterated, 2), fixed(c.mean_iterations, 1))
                   : fmt::format("{} per step", scene.spec.solver.iteration_count)),
-         convergence(verdict), balance});
+         numerics(verdict), balance});
     return all;
 }
 
@@ -298,8 +298,7 @@ Json observations(const scene::Scene& scene, const run::RunResult& result) {
     for (const params::ObservationSpec& observed : scene.spec.observations) {
         const observe::FrontSample computed = front_at(result.observation, observed.chainage);
         Json velocity = number_or_null<Json>(computed.front_velocity);
-        if (velocity.is_null() && result.zoom &&
-            !contains(result.zoom->area, scene.flow_path.point_at(observed.chainage))) {
+        if (velocity.is_null() && outside_zoom(result, scene.flow_path.point_at(observed.chainage))) {
             velocity = "outside the zoom";
         }
         rows["rows"].push_back({{"observation", observed.name},

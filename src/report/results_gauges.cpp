@@ -13,11 +13,6 @@ namespace {
 
 constexpr std::size_t max_drawn = 12;  // a row of plots each
 
-/// Whether a place lies beyond the area that was computed.
-bool outside_zoom(const run::RunResult& result, const PlanPoint& place) {
-    return result.zoom && !contains(result.zoom->area, place);
-}
-
 /// Gauges at which any of the runs had debris.
 std::vector<std::size_t> wet_gauges(const std::vector<NamedRun>& runs) {
     std::vector<std::size_t> wet;

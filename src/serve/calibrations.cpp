@@ -85,7 +85,7 @@ Result<calibrate::CalibrationPlan> read_plan(const json& wanted) {
             return Error{fmt::format("search_with = {}: must be depth_averaged or null", with->dump().substr(0, 40))};
         }
         plan.search.runs = calibrate::runs_beside_fast;
-        plan.search.fast_runs = calibrate::usual_fast_runs;
+        plan.search.fast_runs = calibrate::default_fast_runs;
     }
     if (const auto runs = wanted.find("runs"); runs != wanted.end()) {
         if (!runs->is_number_unsigned() || runs->get<std::uint64_t>() > 2000) {

@@ -4,8 +4,11 @@
 #include <atomic>
 #include <csignal>
 #include <fstream>
+#include <functional>
+#include <memory>
 #include <mutex>
 #include <openssl/ssl.h>
+#include <optional>
 #include <poll.h>
 #include <sys/socket.h>
 #include <thread>
@@ -23,17 +26,59 @@ namespace {
 
 using ::testing::HasSubstr;
 
-/// Takes posts and answers each with a status: 200 after the first `failures` ones, which get 503.
-class Receiver {
+/// Takes connections one after the other, on a thread of its own.
+class Listener {
   public:
-    explicit Receiver(int failures = 0)
-        : file_(listen_anywhere(port_)), failures_(failures), thread_([this] { run(); }) {}
-    ~Receiver() {
+    /// `serve`: is given each of them.
+    explicit Listener(std::function<void(int client)> serve)
+        : file_(listen_anywhere(port_)), serve_(std::move(serve)), thread_([this] { run(); }) {}
+    ~Listener() {
         stop_ = true;
         thread_.join();
         close(file_);
     }
     [[nodiscard]] std::uint16_t port() const { return port_; }
+
+  private:
+    void run() {
+        while (!stop_) {
+            pollfd waiting{file_, POLLIN, 0};
+            if (poll(&waiting, 1, 50) <= 0) continue;
+            const int client = accept(file_, nullptr, nullptr);
+            serve_(client);
+            close(client);
+        }
+    }
+
+    std::uint16_t port_ = 0;
+    int file_;
+    std::function<void(int client)> serve_;
+    std::atomic<bool> stop_ = false;
+    std::thread thread_;
+};
+
+/// A request, up to the end of its JSON. `receive(room, size)`: the bytes that came, 0 or less at the end.
+template <class Receive>
+std::string read_request(const Receive& receive) {
+    std::string request;
+    std::array<char, 4096> piece{};
+    while (request.empty() || request.back() != '}') {
+        const auto got = receive(piece.data(), piece.size());
+        if (got <= 0) break;
+        request.append(piece.data(), static_cast<std::size_t>(got));
+    }
+    return request;
+}
+
+std::string answer_with(const char* status) {
+    return fmt::format("HTTP/1.1 {}\r\nContent-Length: 0\r\nConnection: close\r\n\r\n", status);
+}
+
+/// Takes posts and answers each with a status: 200 after the first `failures` ones, which get 503.
+class Receiver {
+  public:
+    explicit Receiver(int failures = 0) : failures_(failures) {}
+    [[nodiscard]] std::uint16_t port() const { return listener_.port(); }
     [[nodiscard]] std::vector<std::string> requests() const {
         const std::lock_guard lock(mutex_);
         return requests_;
@@ -49,38 +94,23 @@ class Receiver {
     }
 
   private:
-    void run() {
-        while (!stop_) {
-            pollfd waiting{file_, POLLIN, 0};
-            if (poll(&waiting, 1, 50) <= 0) continue;
-            const int client = accept(file_, nullptr, nullptr);
-            std::string request;
-            std::array<char, 4096> piece{};
-            while (request.empty() || request.back() != '}') {
-                const ssize_t got = recv(client, piece.data(), piece.size(), 0);
-                if (got <= 0) break;
-                request.append(piece.data(), static_cast<std::size_t>(got));
-            }
-            std::size_t count = 0;
-            {
-                const std::lock_guard lock(mutex_);
-                requests_.push_back(request);
-                count = requests_.size();
-            }
-            const std::string answer = std::string("HTTP/1.1 ") +
-                                       (count > static_cast<std::size_t>(failures_) ? "200 OK" : "503 Busy") +
-                                       "\r\nContent-Length: 0\r\nConnection: close\r\n\r\n";
-            (void)!send(client, answer.data(), answer.size(), MSG_NOSIGNAL);
-            close(client);
+    void serve(int client) {
+        const std::string request =
+            read_request([&](char* room, std::size_t size) { return recv(client, room, size, 0); });
+        std::size_t count = 0;
+        {
+            const std::lock_guard lock(mutex_);
+            requests_.push_back(request);
+            count = requests_.size();
         }
+        const std::string answer = answer_with(count > static_cast<std::size_t>(failures_) ? "200 OK" : "503 Busy");
+        (void)!send(client, answer.data(), answer.size(), MSG_NOSIGNAL);
     }
 
-    std::uint16_t port_ = 0;
-    int file_, failures_;
-    std::atomic<bool> stop_ = false;
+    int failures_;
     mutable std::mutex mutex_;
     std::vector<std::string> requests_;
-    std::thread thread_;
+    Listener listener_{[this](int client) { serve(client); }};
 };
 
 TEST_F(AlertsTest, an_alarm_is_posted_once_with_the_hash_of_the_run_and_is_tried_again) {
@@ -146,65 +176,44 @@ TEST_F(AlertsTest, a_receiver_that_does_not_answer_holds_nothing_up_and_is_told_
 /// Takes posts over TLS and answers them with 200.
 class TlsReceiver {
   public:
-    explicit TlsReceiver(const Pair& pair) : context_(SSL_CTX_new(TLS_server_method())), file_(listen_anywhere(port_)) {
+    explicit TlsReceiver(const Pair& pair) {
         BIO *certificate = BIO_new_mem_buf(pair.certificate.data(), static_cast<int>(pair.certificate.size())),
             *key = BIO_new_mem_buf(pair.key.data(), static_cast<int>(pair.key.size()));
         X509* read = PEM_read_bio_X509(certificate, nullptr, nullptr, nullptr);
         EVP_PKEY* secret = PEM_read_bio_PrivateKey(key, nullptr, nullptr, nullptr);
-        SSL_CTX_use_certificate(context_, read);
-        SSL_CTX_use_PrivateKey(context_, secret);
+        SSL_CTX_use_certificate(context_.get(), read);
+        SSL_CTX_use_PrivateKey(context_.get(), secret);
         X509_free(read);
         EVP_PKEY_free(secret);
         BIO_free(certificate);
         BIO_free(key);
-        thread_ = std::thread([this] { run(); });
+        listener_.emplace([this](int client) { serve(client); });
     }
-    ~TlsReceiver() {
-        stop_ = true;
-        thread_.join();
-        close(file_);
-        SSL_CTX_free(context_);
-    }
-    [[nodiscard]] std::uint16_t port() const { return port_; }
+    [[nodiscard]] std::uint16_t port() const { return listener_->port(); }
     [[nodiscard]] std::string request() {
         const std::lock_guard lock(mutex_);
         return request_;
     }
 
   private:
-    void run() {
-        while (!stop_) {
-            pollfd waiting{file_, POLLIN, 0};
-            if (poll(&waiting, 1, 50) <= 0) continue;
-            const int client = accept(file_, nullptr, nullptr);
-            SSL* session = SSL_new(context_);
-            SSL_set_fd(session, client);
-            if (SSL_accept(session) == 1) answer(session);
-            SSL_free(session);
-            close(client);
+    void serve(int client) {
+        SSL* session = SSL_new(context_.get());
+        SSL_set_fd(session, client);
+        if (SSL_accept(session) == 1) {
+            const std::string request = read_request(
+                [&](char* room, std::size_t size) { return SSL_read(session, room, static_cast<int>(size)); });
+            const std::string answer = answer_with("200 OK");
+            SSL_write(session, answer.data(), static_cast<int>(answer.size()));
+            const std::lock_guard lock(mutex_);
+            request_ = request;
         }
-    }
-    void answer(SSL* session) {
-        std::string request;
-        std::array<char, 4096> piece{};
-        while (request.empty() || request.back() != '}') {
-            const int got = SSL_read(session, piece.data(), static_cast<int>(piece.size()));
-            if (got <= 0) return;
-            request.append(piece.data(), static_cast<std::size_t>(got));
-        }
-        const std::string answer = "HTTP/1.1 200 OK\r\nContent-Length: 0\r\nConnection: close\r\n\r\n";
-        SSL_write(session, answer.data(), static_cast<int>(answer.size()));
-        const std::lock_guard lock(mutex_);
-        request_ = request;
+        SSL_free(session);
     }
 
-    SSL_CTX* context_;
-    std::uint16_t port_ = 0;
-    int file_;
-    std::atomic<bool> stop_ = false;
+    std::unique_ptr<SSL_CTX, void (*)(SSL_CTX*)> context_{SSL_CTX_new(TLS_server_method()), SSL_CTX_free};
     std::mutex mutex_;
     std::string request_;
-    std::thread thread_;
+    std::optional<Listener> listener_;
 };
 
 TEST(Webhook, goes_over_tls_only_to_a_host_whose_certificate_is_valid) {

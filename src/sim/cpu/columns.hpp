@@ -13,17 +13,17 @@ namespace talus::sim::cpu {
 /// whole numbers, so that sums do not depend on the number of threads.
 ///
 /// Debris that moves is near together in plan as a rule: the grid is then an array over its bounding box, and debris
-/// at rest elsewhere does not count. Where the box has many more columns than there are particles, the columns that
+/// at rest outside it is not counted. Where the box has many more columns than there are particles, the columns that
 /// hold any are found by hashing.
 class Columns {
   public:
     explicit Columns(std::size_t capacity) : capacity_(capacity) {}
 
-    /// Distributes the first finite points over the centres of columns that are `width` wide, m: one for each element
-    /// of `asleep`, 1 where nobody will ask at that point. The first call allocates the memory.
+    /// Distributes the first asleep.size() points, which are finite, over the centres of columns that are `width` wide,
+    /// m. `asleep`: 1 for points at which nobody asks for the sum. The first call allocates the memory.
     void count(const VectorArray& points, std::span<const std::uint8_t> asleep, double width);
-    /// Particles in a column at a place, interpolated between the centres of columns. It must lie between points that
-    /// are not asleep.
+    /// Particles in a column at a place, interpolated between the centres of columns; of a place within the bounding
+    /// box of the points that are not asleep.
     [[nodiscard]] float particles_at(float x, float y) const;
 
   private:

@@ -118,7 +118,7 @@ class BackendOn final : public Resident<Executor> {
 
     void measure_compression(const Model&, State& state) override {
         const CompressionOf of{data_.work.compression, data_.work.tolerated_compression};
-        executor_.template reduce<CompressionSum>(state.awake, {}, of, JoinCompression{}).write(state, state.count);
+        executor_.template reduce<CompressionSum>(state.awake, {}, of, Add{}).write(state, state.count);
     }
 
     void undo_overlaps(const Model& model, const Ground&, State& state) override {

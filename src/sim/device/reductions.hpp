@@ -18,9 +18,6 @@ struct CompressionOf {
         return own;
     }
 };
-struct JoinCompression {
-    TALUS_DEVICE CompressionSum operator()(const CompressionSum& a, const CompressionSum& b) const { return a + b; }
-};
 struct MotionOf {
     Data d;
     MotionCount count{};

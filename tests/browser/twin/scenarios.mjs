@@ -187,6 +187,9 @@ export async function testScenarios(run) {
     await page.keyboard.press("Control+z");
     await until(parameter, (v) => v === 0.33, "the model is undone");
     await until(() => friction.inputValue(), (v) => Number(v) === 0.33, "the field with the focus shows it");
+    await page.keyboard.type("0.4");
+    assert.equal(await friction.inputValue(), "0.4", "what is typed next replaces it");
+    await page.keyboard.press("Escape");
     const { revision } = await setup("A");
     await page.keyboard.press("Control+a");
     await page.keyboard.type("0.5");

@@ -16,8 +16,10 @@ export function watchTyping(): void {
 }
 export const isTyped = (field: Element | null): boolean => field instanceof HTMLElement && field.dataset["typed"] !== undefined;
 
-/** Replaces the text, whether or not the field has the focus. */
+/** Replaces the text, whether or not the field has the focus. What is typed next then replaces all of it, as in a field just entered. */
 export function put(field: HTMLInputElement, text: string): void {
   delete field.dataset["typed"];
-  if (field.value !== text) field.value = text;
+  if (field.value === text) return;
+  field.value = text;
+  if (document.activeElement === field) field.select();
 }
