@@ -298,7 +298,8 @@ Json observations(const scene::Scene& scene, const run::RunResult& result) {
     for (const params::ObservationSpec& observed : scene.spec.observations) {
         const observe::FrontSample computed = front_at(result.observation, observed.chainage);
         Json velocity = number_or_null<Json>(computed.front_velocity);
-        if (velocity.is_null() && outside_zoom(result, scene.flow_path.point_at(observed.chainage))) {
+        if (velocity.is_null() && !scene.flow_path.empty() &&
+            outside_zoom(result, scene.flow_path.point_at(observed.chainage))) {
             velocity = "outside the zoom";
         }
         rows["rows"].push_back({{"observation", observed.name},
