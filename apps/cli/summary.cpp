@@ -124,7 +124,9 @@ std::string summary_text(const scene::Scene& scene, const run::RunResult& result
     }
     for (const params::ObservationSpec& observed : scene.spec.observations) {
         const observe::FrontSample front = front_at(seen, observed.chainage);
-        const std::string computed = std::isnan(front.arrival_time)
+        const bool outside = !scene.flow_path.empty() && !result.covers(scene.flow_path.point_at(observed.chainage));
+        const std::string computed = outside ? "outside the zoom"
+                                     : std::isnan(front.arrival_time)
                                          ? "not reached"
                                          : fmt::format("{}, debris there {}", speed_text(front.front_velocity),
                                                        speed_text(front.particle_speed));
@@ -132,15 +134,15 @@ std::string summary_text(const scene::Scene& scene, const run::RunResult& result
                                                    observed.front_velocity));
     }
     if (const observe::RunOut& r = seen.run_out; std::isfinite(r.along_flow)) {
-        text += line("run-out",
-                     fmt::format("{}{:.0f} m along the flow, {:.0f} m straight, drop {:.0f} m, runout angle "
-                                 "{:.1f} degrees{}",
-                                 r.at_least ? "at least " : "", r.along_flow, r.straight, r.drop,
-                                 r.runout_angle * degrees_per_radian, r.at_least ? "; debris left the terrain" : ""));
+        text += line("run-out", fmt::format("{}{:.0f} m along the flow, {:.0f} m straight, drop {:.0f} m, runout angle "
+                                            "{:.1f} degrees{}",
+                                            r.at_least ? "at least " : "", r.along_flow, r.straight, r.drop,
+                                            r.runout_angle * degrees_per_radian,
+                                            r.at_least ? fmt::format("; debris left the {}", result.extent()) : ""));
     }
-    text += line("volume", fmt::format("{:.1f} m3 released: {:.1f} deposited, {:.1f} moving, {:.1f} left the terrain",
+    text += line("volume", fmt::format("{:.1f} m3 released: {:.1f} deposited, {:.1f} moving, {:.1f} left the {}",
                                        seen.volume_released, end.volume_deposited, end.volume_moving + end.volume_held,
-                                       end.volume_left));
+                                       end.volume_left, result.extent()));
     if (!scene.bed.empty()) {
         text += line("entrained", fmt::format("{:.1f} m3 from the bed", seen.erosion.volume));
     }

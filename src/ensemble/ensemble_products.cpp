@@ -212,7 +212,7 @@ Status write_zone_polygons(const EnsembleResult& result, const fs::path& folder,
                                      features, result.scene->crs));
     std::vector<report::VectorClass> drawn;
     for (const report::Category& zone : result.matrix->zones) {
-        drawn.push_back({zone.name, zone.name, {false, zone.colour, zone.colour, 170, 0.1}});
+        drawn.push_back({zone.name, zone.name, {zone.colour, zone.colour, 170, 0.1}});
     }
     const std::string style = report::qgis_vector_style("name", drawn);
     layers.add_vector("Hazard zones, polygons", "hazard_zones.gpkg", "hazard_zones", style, false);
@@ -235,9 +235,9 @@ Status write_building_polygons(const EnsembleResult& result, const fs::path& fol
     const std::string rare = fmt::format("below {} %", odds.breaks.front());
     std::vector<report::VectorClass> classes;
     for (std::size_t k = 0; k < odds.breaks.size(); ++k) {
-        classes.push_back({class_text(k), class_text(k), {false, odds.colours[k], outline}});
+        classes.push_back({class_text(k), class_text(k), {odds.colours[k], outline}});
     }
-    classes.push_back({rare, rare, {false, {217, 217, 217}, outline}});
+    classes.push_back({rare, rare, {{217, 217, 217}, outline}});
 
     std::vector<geo::Field> fields = {{"name", true}, {"probability_class", true}};
     for (const std::string& name : building_columns(result)) fields.push_back({name});

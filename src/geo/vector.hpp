@@ -47,7 +47,7 @@ struct Field {
 
 struct OutputFeature {
     std::vector<Polygon> polygon;   ///< either this
-    std::vector<PlanPoint> line;    ///< or this
+    std::vector<PlanPoint> line;    ///< or this; of a single point: a point
     std::vector<Attribute> values;  ///< one per field
 };
 

@@ -23,6 +23,10 @@ std::unique_ptr<OGRLinearRing> to_ring(const Ring& ring) {
     return result;
 }
 
+bool is_point(const OutputFeature& feature) {
+    return feature.polygon.empty() && feature.line.size() == 1;
+}
+
 std::unique_ptr<OGRGeometry> to_geometry(const OutputFeature& feature) {
     if (!feature.polygon.empty()) {
         auto all = std::make_unique<OGRMultiPolygon>();
@@ -36,6 +40,7 @@ std::unique_ptr<OGRGeometry> to_geometry(const OutputFeature& feature) {
         return all;
     }
     if (feature.line.empty()) return nullptr;
+    if (is_point(feature)) return std::make_unique<OGRPoint>(feature.line[0].x, feature.line[0].y);
     auto line = std::make_unique<OGRLineString>();
     for (const PlanPoint& p : feature.line) line->addPoint(p.x, p.y);
     line->flattenTo2D();
@@ -44,10 +49,11 @@ std::unique_ptr<OGRGeometry> to_geometry(const OutputFeature& feature) {
 
 OGRwkbGeometryType type_of(const std::vector<OutputFeature>& features) {
     const auto is_polygon = [](const OutputFeature& f) { return !f.polygon.empty(); };
-    const auto is_line = [](const OutputFeature& f) { return f.polygon.empty() && !f.line.empty(); };
+    const auto is_line = [](const OutputFeature& f) { return f.polygon.empty() && f.line.size() > 1; };
     if (features.empty()) return wkbUnknown;
     if (std::all_of(features.begin(), features.end(), is_polygon)) return wkbMultiPolygon;
     if (std::all_of(features.begin(), features.end(), is_line)) return wkbLineString;
+    if (std::all_of(features.begin(), features.end(), is_point)) return wkbPoint;
     return wkbUnknown;
 }
 

@@ -158,6 +158,32 @@ Status write_outline(const scene::Scene& scene, const Grid<float>& map, double l
     return write_geopackage_layer(file, layer, {{"above_m"}, {"area_m2"}}, features, scene.crs);
 }
 
+/// A point per gauge.
+Status write_gauges(const scene::Scene& scene, const observe::Observation& observation, const std::string& file) {
+    std::vector<geo::OutputFeature> features;
+    for (const observe::GaugeRecord& g : observation.gauges) {
+        features.push_back({{},
+                            {g.gauge.at},
+                            {g.gauge.name, g.gauge.chainage, g.arrival_time, g.peak_depth, g.peak_depth_time,
+                             g.peak_speed, g.peak_speed_time}});
+    }
+    return write_geopackage_layer(file, "gauges",
+                                  {{"name", true},
+                                   {"chainage_m"},
+                                   {"first_arrival_time_s"},
+                                   {"peak_depth_m"},
+                                   {"peak_depth_time_s"},
+                                   {"peak_speed_mps"},
+                                   {"peak_speed_time_s"}},
+                                  features, scene.crs);
+}
+
+Status write_zoom(const scene::Scene& scene, const run::ZoomRecord& zoom, const std::string& file) {
+    return write_geopackage_layer(file, "zoom", {{"around", true}, {"volume_in_m3"}, {"particle_spacing_m"}},
+                                  {{{zoom.area}, {}, {zoom.around, zoom.brought_volume, zoom.particle_spacing}}},
+                                  scene.crs);
+}
+
 struct DrawnLayer {
     const char *table, *title;
     bool shown;  ///< where all are opened at once
@@ -165,30 +191,39 @@ struct DrawnLayer {
 };
 
 /// How QGIS draws the layers, those on top first.
-std::vector<DrawnLayer> drawn_layers(const scene::Scene& scene) {
+std::vector<DrawnLayer> drawn_layers(const scene::Scene& scene, const run::RunResult& result) {
     using report::Colour;
     using report::qgis_vector_style;
     using report::VectorClass;
     using report::VectorSymbol;
+    using Kind = VectorSymbol::Kind;
     const Colour dark{60, 60, 60}, red{179, 32, 43}, blue{20, 80, 140}, brown{122, 84, 48};
     std::vector<VectorClass> buildings, intensities;
     for (const report::IntensityClass& c :
          report::intensity_guideline(scene.spec.outputs.intensity_guideline).classes) {
-        intensities.push_back({c.name, c.name, VectorSymbol{false, c.colour, c.colour, 170, 0.1}});
-        buildings.push_back({c.name, "intensity " + c.name, VectorSymbol{false, c.colour, dark}});
+        intensities.push_back({c.name, c.name, VectorSymbol{c.colour, c.colour, 170, 0.1}});
+        buildings.push_back({c.name, "intensity " + c.name, VectorSymbol{c.colour, dark}});
     }
-    buildings.push_back({"", "no intensity class", VectorSymbol{false, {217, 217, 217}, dark}});
+    buildings.push_back({"", "no intensity class", VectorSymbol{{217, 217, 217}, dark}});
     std::vector<DrawnLayer> layers;
+    if (!result.observation.gauges.empty()) {
+        const VectorSymbol gauge{blue, {255, 255, 255}, 255, 0.3, Kind::point};
+        layers.push_back({"gauges", "Gauges", true, qgis_vector_style(gauge, "name")});
+    }
+    if (result.zoom) {
+        const VectorSymbol boundary{red, red, 0, 0.5};
+        layers.push_back({"zoom", "Boundary of the zoom", true, qgis_vector_style(boundary)});
+    }
     if (!scene.flow_path.empty()) {
-        const VectorSymbol mark{true, {}, dark, 255, 0.2}, path{true, {}, blue, 255, 0.5};
-        layers = {{"chainage", "Chainage, m", false, qgis_vector_style(mark, "chainage_m")},
-                  {"flow_path", "Flow path", true, qgis_vector_style(path)}};
+        const VectorSymbol mark{{}, dark, 255, 0.2, Kind::line}, path{{}, blue, 255, 0.5, Kind::line};
+        layers.push_back({"chainage", "Chainage, m", false, qgis_vector_style(mark, "chainage_m")});
+        layers.push_back({"flow_path", "Flow path", true, qgis_vector_style(path)});
     }
     layers.insert(layers.end(),
                   {{"buildings", "Buildings", true, qgis_vector_style("intensity", buildings, "name")},
-                   {"release", "Release", true, qgis_vector_style(VectorSymbol{false, red, red, 40, 0.5})},
-                   {"deposit", "Deposit", false, qgis_vector_style(VectorSymbol{false, brown, brown, 60, 0.4})},
-                   {"inundation", "Inundation", true, qgis_vector_style(VectorSymbol{false, blue, blue, 0, 0.5})},
+                   {"release", "Release", true, qgis_vector_style(VectorSymbol{red, red, 40, 0.5})},
+                   {"deposit", "Deposit", false, qgis_vector_style(VectorSymbol{brown, brown, 60, 0.4})},
+                   {"inundation", "Inundation", true, qgis_vector_style(VectorSymbol{blue, blue, 0, 0.5})},
                    {"intensity", "Intensity zones", false, qgis_vector_style("intensity", intensities)}});
     return layers;
 }
@@ -205,8 +240,10 @@ Status write_vectors(const scene::Scene& scene, const run::RunResult& result, co
     const double least = scene.spec.outputs.arrival_depth;
     TALUS_TRY(write_outline(scene, observation.maps.peak_depth, least, "inundation", file));
     TALUS_TRY(write_outline(scene, observation.maps.deposit_depth, least, "deposit", file));
+    if (!observation.gauges.empty()) TALUS_TRY(write_gauges(scene, observation, file));
+    if (result.zoom) TALUS_TRY(write_zoom(scene, *result.zoom, file));
     std::vector<geo::LayerStyle> styles;
-    for (const DrawnLayer& layer : drawn_layers(scene)) {
+    for (const DrawnLayer& layer : drawn_layers(scene, result)) {
         styles.push_back({layer.table, layer.style});
         layers.add_vector(layer.title, "results.gpkg", layer.table, layer.style, layer.shown);
     }

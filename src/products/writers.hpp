@@ -27,7 +27,7 @@ namespace talus::products {
 
 /// results.gpkg with the layers buildings, release, intensity (polygons of each class), inundation and deposit
 /// (outlines of what is deeper than outputs.arrival_depth_m), flow_path and chainage (a short line across the path per
-/// mark), and their styles for QGIS. They are added to `layers`.
+/// mark), gauges and zoom (its boundary) where there are any, and their styles for QGIS. They are added to `layers`.
 [[nodiscard]] Status write_vectors(const scene::Scene& scene, const run::RunResult& result,
                                    const std::filesystem::path& folder, LayerDefinition& layers);
 

@@ -46,49 +46,6 @@ double largest(const Grid<float>& grid) {
     return most;
 }
 
-/// The smallest extent around the cells that have a value.
-std::optional<Extent> wet_extent(const Grid<float>& grid) {
-    std::optional<Extent> out;
-    for (int r = 0; r < grid.geometry.rows; ++r) {
-        for (int c = 0; c < grid.geometry.columns; ++c) {
-            if (std::isnan(grid.at(c, r))) continue;
-            const PlanPoint p = grid.geometry.centre(c, r);
-            if (!out) out = Extent{p.x, p.y, p.x, p.y};
-            out->include(p);
-        }
-    }
-    return out;
-}
-
-/// Widens the shorter side so that no map is too narrow, then keeps the area within the terrain.
-Extent well_proportioned(Extent area, const Extent& terrain) {
-    constexpr double widest = 1.75, narrowest = 0.85;  // width over height
-    const double ratio = area.width() / area.height();
-    if (ratio > widest) {
-        const double more = (area.width() / widest - area.height()) / 2;
-        area.y_min -= more;
-        area.y_max += more;
-    } else if (ratio < narrowest) {
-        const double more = (area.height() * narrowest - area.width()) / 2;
-        area.x_min -= more;
-        area.x_max += more;
-    }
-    // Shifted inward first, so that the margin lost on one side is gained on the other; then clipped.
-    const auto keep = [](double& low, double& high, double terrain_low, double terrain_high) {
-        if (low < terrain_low) {
-            high += terrain_low - low;
-            low = terrain_low;
-        }
-        if (high > terrain_high) {
-            low = std::max(terrain_low, low - (high - terrain_high));
-            high = terrain_high;
-        }
-    };
-    keep(area.x_min, area.x_max, terrain.x_min, terrain.x_max);
-    keep(area.y_min, area.y_max, terrain.y_min, terrain.y_max);
-    return area;
-}
-
 /// Classes of a layer over its part inside the frame, finer than its cells: values are interpolated between them.
 ClassImage paint(const HazardMap& layer, const Grid<float>& map, const Classes& classes) {
     const GridGeometry& g = map.geometry;
@@ -198,50 +155,12 @@ int impact_class(const observe::BuildingImpact& impact) {
     return impact.peak_impact_pressure < 15e3 ? 1 : impact.peak_impact_pressure < 30e3 ? 2 : 3;
 }
 
-MapFrame map_frame(const scene::Scene& scene, const MapContent& content) {
-    const Extent terrain = scene.terrain.elevation().geometry.extent();
-    std::vector<Extent> parts;
-    if (const auto wet = wet_extent(*content.reached)) parts.push_back(*wet);
-    for (const terrain::Release& release : scene.releases) {
-        if (!release.patches.empty() || release.thickness_raster) parts.push_back(release.extent());
-    }
-    for (const terrain::Inflow& inflow : scene.inflows) {
-        for (const Polygon& part : inflow.area) parts.push_back(extent_of(part));
-        if (inflow.over_area()) continue;
-        for (const PlanPoint& end : {inflow.from, inflow.to}) parts.push_back({end.x, end.y, end.x, end.y});
-    }
-    if (!scene.flow_path.empty()) {
-        double last = content.farthest_chainage;
-        for (const params::ObservationSpec& o : scene.spec.observations)
-            last = std::isnan(last) ? o.chainage : std::max(last, o.chainage);
-        const double end = std::isnan(last) ? scene.flow_path.length() : std::min(scene.flow_path.length(), 1.2 * last);
-        for (int k = 0; k <= 100; ++k) {
-            const PlanPoint p = scene.flow_path.point_at(end * k / 100);
-            parts.push_back({p.x, p.y, p.x, p.y});
-        }
-    }
-    for (std::size_t i = 0; i < std::min(scene.buildings.size(), content.buildings.classes.size()); ++i) {
-        if (content.buildings.classes[i] == 0) continue;
-        for (const Polygon& polygon : scene.buildings[i].footprint) parts.push_back(extent_of(polygon));
-    }
-    Extent area = parts.empty() ? terrain : parts.front();
-    for (const Extent& e : parts) {
-        area.include({e.x_min, e.y_min});
-        area.include({e.x_max, e.y_max});
-    }
-    area = well_proportioned(area.grown(10 + 0.06 * std::max(area.width(), area.height())), terrain);
-    MapFrame frame;
-    frame.area = area;
-    const double widest = 1000 - frame.left - 20 - MapFrame::key_width;
-    frame.scale = std::min(widest / area.width(), 700 / area.height());
-    return frame;
-}
-
 MapContent map_content(const scene::Scene& scene, const run::RunResult& result) {
     const observe::Observation& observation = result.observation;
     MapContent content;
     content.reached = &observation.maps.peak_depth;
     content.farthest_chainage = observation.run_out.front_chainage;
+    if (result.zoom) content.zoom = result.zoom->area;
     content.cell = result.map_cell > 0 ? result.map_cell : observation.maps.peak_depth.geometry.cell;
     const bool barriers = hits_among(observation.buildings, true).all > 0;
     content.buildings.title = barriers ? "Structures, impact pressure" : "Buildings, impact pressure";
@@ -309,12 +228,12 @@ std::string definitions(const scene::Scene& scene, const MapContent& content, co
     svg.open("g", {{"id", "map-over"}});
     svg.open("g", {clip()});
     draw_contours(svg, scene, frame, contour_interval);
-    draw_vectors(svg, scene, content.buildings, frame);
+    draw_vectors(svg, scene, content, frame);
     svg.close("g");
     draw_frame(svg, scene, content, frame);
     svg.close("g");
     svg.open("g", {{"id", "map-key"}, {"transform", translation(0, key_top)}});
-    draw_key(svg, scene, content.buildings, frame, contour_interval);
+    draw_key(svg, scene, content, frame, contour_interval);
     svg.close("g");
     svg.close("defs");
     svg.close("svg");
@@ -336,7 +255,7 @@ Result<Json> map_figures(const scene::Scene& scene, const MapContent& content) {
         max_classes = std::max(max_classes, classes_of(layer.style, most).breaks.size());
     }
     const double key_top = frame.top + 44 + 18.0 * static_cast<double>(max_classes) + 14;
-    const double height = std::max(frame.bottom() + 30, key_top + key_height(scene));
+    const double height = std::max(frame.bottom() + 30, key_top + key_height(scene, content));
 
     double contour_interval = 0;
     Json out = {{"definitions", definitions(scene, content, frame, relief, key_top, contour_interval)},

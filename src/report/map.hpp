@@ -2,6 +2,7 @@
 
 #include <array>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -59,13 +60,14 @@ struct MapContent {
     std::vector<MapLayer> layers;
     std::shared_ptr<const Grid<float>> made{};  ///< the grid of a layer that the maps alone have
     bool not_converged = false;                 ///< said on every map
+    std::optional<Polygon> zoom{};              ///< all results are of this area
 };
 
 /// The maps of a single run. `result` must outlive them.
 [[nodiscard]] MapContent map_content(const scene::Scene& scene, const run::RunResult& result);
 
 /// The area of interest: the ground reached by debris, the releases, the flow path (to 20 % beyond the run-out and the
-/// last observation), the buildings hit, and a margin, kept within the terrain.
+/// last observation), the buildings hit, and a margin, kept within the terrain. Of a zoom: its area.
 [[nodiscard]] MapFrame map_frame(const scene::Scene& scene, const MapContent& content);
 
 /// Data of the template `maps`: `definitions`, a hidden <svg> with the shared parts of all maps; `layers`, one per map;
@@ -92,9 +94,9 @@ struct MapContent {
 
 // The parts of the drawing that all maps share.
 void draw_contours(Svg& svg, const scene::Scene& scene, const MapFrame& frame, double& interval);
-void draw_vectors(Svg& svg, const scene::Scene& scene, const BuildingMarks& marks, const MapFrame& frame);
+void draw_vectors(Svg& svg, const scene::Scene& scene, const MapContent& content, const MapFrame& frame);
 void draw_frame(Svg& svg, const scene::Scene& scene, const MapContent& content, const MapFrame& frame);
-void draw_key(Svg& svg, const scene::Scene& scene, const BuildingMarks& marks, const MapFrame& frame,
+void draw_key(Svg& svg, const scene::Scene& scene, const MapContent& content, const MapFrame& frame,
               double contour_interval);
 /// Scale bar, scale on paper and north; (x, y) is its upper left corner.
 void draw_scale(Svg& svg, const MapFrame& frame, double x, double y);
@@ -105,6 +107,6 @@ void draw_image(Svg& svg, std::string_view css_class, double x, double y, double
 void draw_swatch(Svg& svg, double x, double y, const Colour& colour);
 
 /// Height of what draw_key draws, SVG units.
-[[nodiscard]] double key_height(const scene::Scene& scene);
+[[nodiscard]] double key_height(const scene::Scene& scene, const MapContent& content);
 
 }  // namespace talus::report

@@ -69,11 +69,12 @@ void draw_contour_label(Svg& svg, const MapFrame& frame, const geo::Contour& con
     }
 }
 
-/// A building's name below it, centred.
+/// The name of a building or gauge below it, centred.
 struct Label {
     int rank;  ///< its class: where two names would overlap, that of the higher class is kept
     double x, y;
     std::string text;
+    const char* style = "building-name";
 
     [[nodiscard]] double half_width() const { return 3.7 * static_cast<double>(text.size()); }
     [[nodiscard]] bool meets(const Label& other) const {
@@ -86,7 +87,7 @@ void draw_labels(Svg& svg, std::vector<Label> labels) {
     std::vector<Label> drawn;
     for (const Label& label : labels) {
         if (std::any_of(drawn.begin(), drawn.end(), [&](const Label& other) { return other.meets(label); })) continue;
-        svg.text("building-name", label.x, label.y, label.text);
+        svg.text(label.style, label.x, label.y, label.text);
         drawn.push_back(label);
     }
 }
@@ -118,8 +119,13 @@ void draw_flow_path(Svg& svg, const scene::Scene& scene, const MapFrame& frame) 
     }
 }
 
+/// Observations are given by chainage.
+bool has_observations(const scene::Scene& scene) {
+    return !scene.spec.observations.empty() && !scene.flow_path.empty();
+}
+
 void draw_observations(Svg& svg, const scene::Scene& scene, const MapFrame& frame) {
-    if (scene.flow_path.empty()) return;
+    if (!has_observations(scene)) return;
     for (const params::ObservationSpec& o : scene.spec.observations) {
         const PlanPoint p = scene.flow_path.point_at(o.chainage), before = scene.flow_path.point_at(o.chainage - 2),
                         after = scene.flow_path.point_at(o.chainage + 2);
@@ -128,6 +134,20 @@ void draw_observations(Svg& svg, const scene::Scene& scene, const MapFrame& fram
         svg.path("observation", diamond(frame.x(p.x), frame.y(p.y)));
         svg.text("observation-label", frame.x(p.x) + 13 * nx, frame.y(p.y) + 16 * ny + 4,
                  fmt::format("{} m: {} m/s", fixed(o.chainage, 0), plain(o.front_velocity)), nx >= 0 ? "start" : "end");
+    }
+}
+
+/// Where an observation stands at the same place, its label names both.
+void draw_gauges(Svg& svg, const scene::Scene& scene, const MapFrame& frame, std::vector<Label>& labels) {
+    for (const terrain::Gauge& gauge : scene.gauges) {
+        if (!frame.area.contains(gauge.at)) continue;
+        const double x = frame.x(gauge.at.x), y = frame.y(gauge.at.y);
+        svg.path("gauge", disc(x, y), gauge.name);
+        const auto& observed = scene.spec.observations;
+        const bool named = std::any_of(observed.begin(), observed.end(), [&](const params::ObservationSpec& o) {
+            return std::abs(o.chainage - gauge.chainage) * frame.scale < 14;
+        });
+        if (!named) labels.push_back({0, x, y + 18, shortened(gauge.name, 24), "gauge-name"});
     }
 }
 
@@ -172,7 +192,8 @@ void draw_contours(Svg& svg, const scene::Scene& scene, const MapFrame& frame, d
     svg.append(labels);
 }
 
-void draw_vectors(Svg& svg, const scene::Scene& scene, const BuildingMarks& marks, const MapFrame& frame) {
+void draw_vectors(Svg& svg, const scene::Scene& scene, const MapContent& content, const MapFrame& frame) {
+    const BuildingMarks& marks = content.buildings;
     std::vector<Label> labels;
     for (std::size_t i = 0; i < scene.buildings.size(); ++i) {
         const terrain::Building& building = scene.buildings[i];
@@ -205,6 +226,8 @@ void draw_vectors(Svg& svg, const scene::Scene& scene, const BuildingMarks& mark
     for (const terrain::Inflow& inflow : scene.inflows) draw_inflow(svg, inflow, frame);
     draw_flow_path(svg, scene, frame);
     draw_observations(svg, scene, frame);
+    draw_gauges(svg, scene, frame, labels);
+    if (content.zoom) draw_cased(svg, "zoom-boundary", polygon_data(frame, *content.zoom), "boundary of the zoom");
     draw_labels(svg, std::move(labels));
 }
 
@@ -239,13 +262,14 @@ void draw_frame(Svg& svg, const scene::Scene& scene, const MapContent& content, 
     if (content.not_converged) svg.text("map-flag", left, first + (reconstruction ? line_height : 0), "NOT CONVERGED");
 }
 
-double key_height(const scene::Scene& scene) {
+double key_height(const scene::Scene& scene, const MapContent& content) {
     const int rows = 2 + (scene.releases.empty() ? 0 : 1) + (scene.inflows.empty() ? 0 : 1) +
-                     (scene.spec.observations.empty() ? 0 : 1) + (scene.buildings.empty() ? 0 : 5);
+                     (has_observations(scene) ? 1 : 0) + (scene.gauges.empty() ? 0 : 1) + (content.zoom ? 1 : 0) +
+                     (scene.buildings.empty() ? 0 : 5);
     return 20.0 * rows + 100;
 }
 
-void draw_key(Svg& svg, const scene::Scene& scene, const BuildingMarks& marks, const MapFrame& frame,
+void draw_key(Svg& svg, const scene::Scene& scene, const MapContent& content, const MapFrame& frame,
               double contour_interval) {
     const double x = frame.right() + 20;
     double y = 0;
@@ -267,15 +291,16 @@ void draw_key(Svg& svg, const scene::Scene& scene, const BuildingMarks& marks, c
             svg.path("chainage-tick", "M15 5v10");
         });
     }
-    if (!scene.spec.observations.empty()) {
-        row("Field observation", [&] { svg.path("observation", diamond(15, 10)); });
-    }
+    if (has_observations(scene)) row("Field observation", [&] { svg.path("observation", diamond(15, 10)); });
+    if (!scene.gauges.empty()) row("Gauge", [&] { svg.path("gauge", disc(15, 10)); });
+    if (content.zoom) row("Boundary of the zoom", [&] { draw_cased(svg, "zoom-boundary", "M2 3h26v13h-26Z"); });
     if (contour_interval > 0) {
         row(fmt::format("Contours every {} m", coordinate(contour_interval)),
             [&] { svg.path("index-contour", "M0 10h30"); });
     }
     if (!scene.buildings.empty()) {
         y += 4;
+        const BuildingMarks& marks = content.buildings;
         svg.text("legend-unit", x, y + 12, marks.title);
         y += 18;
         for (int k = 3; k >= 0; --k) {

@@ -148,7 +148,8 @@ Json key_figures(const scene::Scene& scene, const run::RunResult& result) {
     add("run_out_along_flow_m", o.run_out.at_least ? "Run-out along the flow, at least" : "Run-out along the flow",
         o.run_out.along_flow, "f0", ran ? "m" : "",
         ran ? fmt::format("{}\u00a0m in a straight line, drop {}\u00a0m{}{}", fixed(o.run_out.straight, 0),
-                          fixed(o.run_out.drop, 1), front, o.run_out.at_least ? "; debris left the terrain" : "")
+                          fixed(o.run_out.drop, 1), front,
+                          o.run_out.at_least ? fmt::format("; debris left the {}", result.extent()) : "")
             : "no debris ran out");
     add("runout_angle_deg", "Runout angle", o.run_out.runout_angle * degrees_per_radian, "f1", ran ? "°" : "",
         ran ? fmt::format("travel angle of the centre of mass\u00a0{}°",
@@ -204,9 +205,10 @@ Json layers(const scene::Scene& scene, const run::RunResult& result) {
                 enough ? "" : warning, enough);
 }
 
-Json numerics(const run::NumericalVerdict& verdict) {
+Json numerics(const run::RunResult& result, const run::NumericalVerdict& verdict) {
     if (verdict.converged == run::Answer::unknown) {
-        return fact("Numerics", verdict.text + "; talus run --convergence compares with finer numerics");
+        return fact("Numerics",
+                    verdict.text + (result.zoom ? "" : "; talus run --convergence compares with finer numerics"));
     }
     return fact("Numerics", "", verdict.text, verdict.converged == run::Answer::yes);
 }
@@ -267,7 +269,7 @@ Json quality(const scene::Scene& scene, const run::RunResult& result, const run:
                         scene.spec.solver.iteration_count, scene.spec.solver.extra_iteration_count,
                         significant(100 * c.time_share_iterated, 2), fixed(c.mean_iterations, 1))
                   : fmt::format("{} per step", scene.spec.solver.iteration_count)),
-         numerics(verdict), balance});
+         numerics(result, verdict), balance});
     return all;
 }
 
@@ -299,7 +301,7 @@ Json observations(const scene::Scene& scene, const run::RunResult& result) {
         const observe::FrontSample computed = front_at(result.observation, observed.chainage);
         Json velocity = number_or_null<Json>(computed.front_velocity);
         if (velocity.is_null() && !scene.flow_path.empty() &&
-            outside_zoom(result, scene.flow_path.point_at(observed.chainage))) {
+            !result.covers(scene.flow_path.point_at(observed.chainage))) {
             velocity = "outside the zoom";
         }
         rows["rows"].push_back({{"observation", observed.name},

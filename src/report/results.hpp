@@ -59,8 +59,6 @@ struct NamedRun {
 [[nodiscard]] Json gauges(const std::vector<NamedRun>& runs);
 /// What was zoomed, and the balance of volume and momentum across its boundary.
 [[nodiscard]] Json zoom(const run::RunResult& result);
-/// Whether a place lies beyond the area that was computed.
-[[nodiscard]] bool outside_zoom(const run::RunResult& result, const PlanPoint& at);
 /// Which laws the scene uses.
 [[nodiscard]] Json method(const scene::Scene& scene);
 [[nodiscard]] Json chosen_values(const scene::Scene& scene, const run::RunResult& result);

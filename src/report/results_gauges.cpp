@@ -44,7 +44,7 @@ Json rows_of(const std::vector<NamedRun>& runs) {
             Json row = {{"gauge", record.gauge.name}, {"place", place_of(record.gauge)}};
             if (runs.size() > 1) row["model"] = run.name;
             row["arrival_s"] = number_or_null<Json>(record.arrival_time);
-            if (row["arrival_s"].is_null() && outside_zoom(*run.result, record.gauge.at)) {
+            if (row["arrival_s"].is_null() && !run.result->covers(record.gauge.at)) {
                 row["arrival_s"] = "outside the zoom";
             }
             row["peak_depth_m"] = record.peak_depth;

@@ -57,10 +57,6 @@ Json discharge_chart(const run::ZoomRecord& zoom) {
 
 }  // namespace
 
-bool outside_zoom(const run::RunResult& result, const PlanPoint& at) {
-    return result.zoom && !contains(result.zoom->area, at);
-}
-
 Json zoom(const run::RunResult& result) {
     if (!result.zoom) return {};
     const run::ZoomRecord& zoom = *result.zoom;

@@ -64,6 +64,10 @@ std::string diamond(double x, double y) {
     return fmt::format("M{} {}l7 7l-7 7l-7 -7Z", coordinate(x), coordinate(y - 7));
 }
 
+std::string disc(double x, double y) {
+    return fmt::format("M{} {}a4.5 4.5 0 1 0 9 0a4.5 4.5 0 1 0 -9 0Z", coordinate(x - 4.5), coordinate(y));
+}
+
 std::string translation(double x, double y) {
     return fmt::format("translate({} {})", coordinate(x), coordinate(y));
 }

@@ -47,8 +47,9 @@ class Svg {
     std::string text_;
 };
 
-/// The path of a diamond around a place.
+/// The path of a diamond, or of a disc, around a place.
 [[nodiscard]] std::string diamond(double x, double y);
+[[nodiscard]] std::string disc(double x, double y);
 
 /// "translate(x y)"
 [[nodiscard]] std::string translation(double x, double y);

@@ -19,9 +19,19 @@ std::string option(const char* name, const std::string& value) {
 
 std::string symbol_text(const VectorSymbol& symbol, std::size_t name) {
     std::string options;
-    if (symbol.is_line) {
+    const char *type = "fill", *layer = "SimpleFill";
+    if (symbol.kind == VectorSymbol::Kind::line) {
+        type = "line";
+        layer = "SimpleLine";
         options = option("line_color", colour_text(symbol.line, 255)) +
                   option("line_width", fmt::format("{}", symbol.line_width)) + option("line_width_unit", "MM");
+    } else if (symbol.kind == VectorSymbol::Kind::point) {
+        type = "marker";
+        layer = "SimpleMarker";
+        options = option("name", "circle") + option("color", colour_text(symbol.fill, symbol.fill_alpha)) +
+                  option("outline_color", colour_text(symbol.line, 255)) +
+                  option("outline_width", fmt::format("{}", symbol.line_width)) + option("outline_width_unit", "MM") +
+                  option("size", "3") + option("size_unit", "MM");
     } else {
         options = option("color", colour_text(symbol.fill, symbol.fill_alpha)) +
                   option("outline_color", colour_text(symbol.line, 255)) + option("outline_style", "solid") +
@@ -35,7 +45,7 @@ std::string symbol_text(const VectorSymbol& symbol, std::size_t name) {
      </layer>
     </symbol>
 )",
-                       symbol.is_line ? "line" : "fill", name, symbol.is_line ? "SimpleLine" : "SimpleFill", options);
+                       type, name, layer, options);
 }
 
 std::string style_text(const std::string& renderer, const std::string& label) {

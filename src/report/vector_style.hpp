@@ -7,12 +7,13 @@
 
 namespace talus::report {
 
-/// How polygons or lines are drawn. Colours with an alpha of 0 to 255.
+/// How polygons, lines or points are drawn. Colours with an alpha of 0 to 255.
 struct VectorSymbol {
-    bool is_line = false;
+    enum class Kind { polygon, line, point };
     Colour fill{}, line{};
     int fill_alpha = 255;
     double line_width = 0.3;  ///< mm
+    Kind kind = Kind::polygon;
 };
 
 /// A class of a layer: features whose attribute has this value.

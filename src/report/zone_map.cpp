@@ -139,12 +139,12 @@ Result<Json> zone_figure(const scene::Scene& scene, const MapContent& content, d
         y += draw_entry(svg, x, y, bed_colours.at(k % bed_colours.size()), true, bed.name, values_of(bed));
     }
     svg.open("g", {{"transform", translation(0, y + 8)}});
-    draw_key(svg, scene, content.buildings, frame, contour_interval);
+    draw_key(svg, scene, content, frame, contour_interval);
     svg.close("g");
     const char* title = scene.spec.beds.empty()    ? "Zones of the ground"
                         : scene.spec.zones.empty() ? "Bed that can be entrained"
                                                    : "Zones of the ground and bed";
-    const double height = std::max(frame.bottom() + 30, y + 8 + key_height(scene));
+    const double height = std::max(frame.bottom() + 30, y + 8 + key_height(scene, content));
     return Json{{"title", title},
                 {"svg", figure_svg(width, height, std::string("Map: ") + title, svg, 1.04 * width, print_width(frame))},
                 {"zones", scene.spec.zones.size()},

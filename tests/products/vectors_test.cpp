@@ -122,6 +122,43 @@ TEST_F(Products, GeoPackageHoldsBuildingsReleasesPathAndMarks) {
     const OGRFeatureUniquePtr mark(marks->GetNextFeature());
     ASSERT_TRUE(mark);
     EXPECT_NEAR(mark->GetFieldAsDouble("front_velocity_mps"), test::SampleValley::velocity_at(100), 1e-9);
+    EXPECT_EQ(data->GetLayerByName("gauges"), nullptr);
+    EXPECT_EQ(data->GetLayerByName("zoom"), nullptr);
+}
+
+TEST_F(Products, GeoPackageHoldsGaugesAndTheBoundaryOfAZoom) {
+    run::RunResult result = *result_;
+    observe::GaugeRecord gully{.gauge = {"gully", {824200, 825550}, 121}};
+    gully.arrival_time = 14;
+    gully.peak_depth = 1.75;
+    result.observation.gauges = {gully, {.gauge = {"mill", {824210, 825560}}}};
+    result.zoom.emplace();
+    result.zoom->around = "House 38";
+    result.zoom->area = {{{824100, 825500}, {824140, 825500}, {824140, 825530}, {824100, 825530}}, {}};
+    const test::TemporaryFolder folder;
+    ASSERT_TRUE(write_products(*scene_, result, folder.path()).ok());
+
+    const GDALDatasetUniquePtr data(GDALDataset::Open(folder.file("results.gpkg").c_str(), GDAL_OF_VECTOR));
+    OGRLayer* gauges = data->GetLayerByName("gauges");
+    ASSERT_NE(gauges, nullptr);
+    EXPECT_EQ(wkbFlatten(gauges->GetGeomType()), wkbPoint);
+    OGRFeatureUniquePtr gauge(gauges->GetNextFeature());
+    EXPECT_EQ(std::string(gauge->GetFieldAsString("name")), "gully");
+    EXPECT_DOUBLE_EQ(gauge->GetGeometryRef()->toPoint()->getX(), 824200);
+    EXPECT_DOUBLE_EQ(gauge->GetFieldAsDouble("first_arrival_time_s"), 14);
+    EXPECT_DOUBLE_EQ(gauge->GetFieldAsDouble("peak_depth_m"), 1.75);
+    gauge.reset(gauges->GetNextFeature());
+    EXPECT_FALSE(gauge->IsFieldSetAndNotNull(gauge->GetFieldIndex("first_arrival_time_s")));
+    EXPECT_FALSE(gauge->IsFieldSetAndNotNull(gauge->GetFieldIndex("chainage_m")));
+
+    const auto zoom = read_polygons(folder.file("results.gpkg"), "zoom", scene_->crs);
+    ASSERT_TRUE(zoom.ok()) << zoom.error().message;
+    EXPECT_NEAR(plan_area(zoom->features.at(0).parts[0]), 40 * 30, 1e-6);
+    EXPECT_EQ(zoom->features[0].attributes.at("around"), geo::Attribute("House 38"));
+    const std::string layers = test::read_text(folder.path() / "results.qlr");
+    EXPECT_THAT(layers, testing::HasSubstr("layername=gauges"));
+    EXPECT_THAT(layers, testing::HasSubstr("layername=zoom"));
+    EXPECT_THAT(layers, testing::HasSubstr("SimpleMarker"));
 }
 
 }  // namespace

@@ -36,6 +36,39 @@ TEST(ReportMap, AWideTerrainIsCroppedToTheEvent) {
     EXPECT_LT(frame.area.height(), 400);
 }
 
+TEST(ReportMap, OfAZoomShowsItsAreaAndBoundary) {
+    Sample s;
+    const Extent whole = map_frame(s.scene, map_content(s.scene, s.result)).area;
+    run::ZoomRecord zoom;
+    zoom.area = {{{824100, 825500}, {824140, 825500}, {824140, 825530}, {824100, 825530}}, {}};
+    s.result.zoom = zoom;
+    const MapContent content = map_content(s.scene, s.result);
+    const Extent area = map_frame(s.scene, content).area;
+    EXPECT_LT(area.width(), whole.width() / 2);
+    EXPECT_TRUE(area.contains({824100, 825500}) && area.contains({824140, 825530}));
+    const auto figures = map_figures(s.scene, content);
+    ASSERT_TRUE(figures.ok()) << figures.error().message;
+    const std::string drawn = (*figures)["definitions"];
+    EXPECT_NE(drawn.find("class=\"zoom-boundary\""), std::string::npos);
+    EXPECT_NE(drawn.find("Boundary of the zoom"), std::string::npos);
+}
+
+TEST(ReportMap, ShowsGaugesAndWithoutAPathNoObservations) {
+    Sample s;
+    const auto drawn = [&] {
+        const auto figures = map_figures(s.scene, map_content(s.scene, s.result));
+        return figures.ok() ? (*figures)["definitions"].get<std::string>() : figures.error().message;
+    };
+    EXPECT_EQ(drawn().find(">Gauge<"), std::string::npos);
+    EXPECT_NE(drawn().find("Field observation"), std::string::npos);
+    s.scene.gauges = {{"at the bend", s.scene.flow_path.point_at(60), 60}, {"far away", {900000, 900000}}};
+    EXPECT_NE(drawn().find(">Gauge<"), std::string::npos);
+    EXPECT_NE(drawn().find("at the bend"), std::string::npos);
+    EXPECT_EQ(drawn().find("far away"), std::string::npos);
+    s.scene.flow_path = terrain::FlowPath();
+    EXPECT_EQ(drawn().find("Field observation"), std::string::npos);
+}
+
 TEST(ReportMap, CallsImpactsByTheirPressure) {
     observe::BuildingImpact b;
     b.peak_impact_pressure = 50e3;
