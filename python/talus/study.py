@@ -61,20 +61,20 @@ class _Clock:
     """How far a run is, by the wall time left until it is expected to be over."""
 
     def __init__(self) -> None:
-        self._marks = [(time.monotonic(), 0.0)]  # wall and simulated time
+        self._start = time.monotonic()
         self._share = 0.0
 
     def line(self, simulation: Simulation, end: float) -> str:
         state = simulation.json("state")
-        now, simulated = time.monotonic(), simulation.time
-        start = self._marks[0][0]
-        # At the pace of the latest quarter of the wall time.
-        before = max((mark for mark in self._marks if mark[0] - start <= 0.75 * (now - start)), default=self._marks[0])
-        self._marks.append((now, simulated))
-        expected = min(end, state["expected_end_s"] or end)
-        pace = (now - before[0]) / max(simulated - before[1], 1e-9)
-        left = 0.0 if state["status"] != "ready" else max(0.0, expected - simulated) * pace
-        self._share = max(self._share, (now - start) / max(now - start + left, 1e-9))
+        gone, simulated = time.monotonic() - self._start, simulation.time
+        expected, remaining = state["expected_end_s"], state["wall_remaining_s"]
+        if remaining is None:  # debris outlasts the estimate: at the mean pace until the end
+            left = gone * max(0.0, end - simulated) / max(simulated, 1e-9)
+        elif expected > end:
+            left = remaining * max(0.0, end - simulated) / (expected - simulated)
+        else:
+            left = remaining
+        self._share = max(self._share, gone / max(gone + left, 1e-9))
         done = "#" * int(40 * self._share)
         return f"[{done:40}] {simulated:.1f} s, about {int(left) // 60}:{int(left) % 60:02} left"
 

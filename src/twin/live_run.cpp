@@ -97,6 +97,12 @@ std::optional<double> LiveRun::expected_end() const {
     return clock_.expected_end();
 }
 
+std::optional<double> LiveRun::wall_remaining() const {
+    if (phase() != run::RunPhase::ready) return 0;
+    if (!expected_end()) return {};
+    return clock_.wall_remaining();
+}
+
 observe::BuildingImpact LiveRun::impact_now(std::size_t obstacle) const {
     observe::BuildingImpact impact = observer().impacts()[obstacle];
     if (const observe::Overtopping* crossings = observer().overtopping(obstacle)) {

@@ -60,6 +60,8 @@ class LiveRun {
     [[nodiscard]] bool too_compressed() const;
     /// s, when the run is expected to be over; nothing before the first step, and while debris outlasts the estimate.
     [[nodiscard]] std::optional<double> expected_end() const;
+    /// s of wall time until then, as fast as the run goes; nothing likewise.
+    [[nodiscard]] std::optional<double> wall_remaining() const;
     /// What is known about the step that cannot be trusted, at fault.
     [[nodiscard]] const std::optional<run::FaultRecord>& fault() const { return run_->fault(); }
     [[nodiscard]] std::string instruction_set() const { return run_->simulation().instruction_set(); }

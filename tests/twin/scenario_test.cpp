@@ -31,13 +31,16 @@ TEST(Scenario, expects_its_end_from_the_motion_of_the_debris) {
     scene.spec.solver.stop_duration = 1;
     const auto scenario = open(scene);
     EXPECT_TRUE(scenario->state_json()["expected_end_s"].is_null());
+    EXPECT_TRUE(scenario->state_json()["wall_remaining_s"].is_null());
     run_until(*scenario, 0.5);
     ASSERT_EQ(scenario->phase(), run::RunPhase::ready);
     EXPECT_GE(number(*scenario, "expected_end_s"), scenario->time());
     EXPECT_LT(number(*scenario, "expected_end_s"), scene.spec.solver.end_time / 2) << "not end_time";
+    EXPECT_GT(number(*scenario, "wall_remaining_s"), 0);
     run_until(*scenario, 100);
     ASSERT_EQ(scenario->phase(), run::RunPhase::at_rest);
     EXPECT_EQ(number(*scenario, "expected_end_s"), number(*scenario, "time_s"));
+    EXPECT_EQ(number(*scenario, "wall_remaining_s"), 0);
 }
 
 TEST(Scenario, comes_to_rest_as_the_run_does_and_goes_on_when_something_changes) {

@@ -1,6 +1,6 @@
 import { describe, expect, it } from "vitest";
 import type { CalibrationStatus, Parameter } from "../src/protocol/messages";
-import { aboutTime, firstRange, MisfitScale, progressText, rangeProblem } from "../src/state/misfit";
+import { firstRange, MisfitScale, progressText, rangeProblem } from "../src/state/misfit";
 
 const parameter = (key: string, value: number | null, low: number | null = 0, high: number | null = null): Parameter =>
   ({ key, label: key, unit: "", default: value, value, help: "", range: { low, high, low_included: true, high_included: true } });
@@ -47,11 +47,8 @@ describe("how far it is", () => {
       .toBe("2 of at most 40 runs, 1 failed · spread over the ranges · about 3\u202fmin left at most");
     expect(progressText(status({ runs: [run(1)], runs_at_most: 10, fast_runs: 38, fast_runs_at_most: 100 })))
       .toBe("38 of at most 100 runs depth-averaged, 1 of at most 10 runs of particles · spread over the ranges");
-    expect(progressText(status({ state: "cancelled", runs: [run(1)] }))).toBe("Cancelled after 1 runs");
+    expect(progressText(status({ state: "cancelled", runs: [run(1)] }))).toBe("Cancelled after 1 run");
     expect(progressText(status({ state: "failed", message: "disk full" }))).toContain("disk full");
     expect(progressText(status({ state: "idle" }))).toBe("");
-  });
-  it("says times no better than they are known", () => {
-    expect([aboutTime(null), aboutTime(3), aboutTime(44), aboutTime(7200)]).toEqual(["", "about 5\u202fs", "about 45\u202fs", "about 2\u202fh"]);
   });
 });

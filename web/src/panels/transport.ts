@@ -2,8 +2,8 @@
 import { scenarioNames } from "../protocol/frame";
 import { watchAll } from "../state/cell";
 import { fixed } from "../state/format";
-import { aboutTime } from "../state/misfit";
 import type { Playback } from "../state/playback";
+import { aboutTime, timeLeft } from "../state/time_left";
 import type { Twin } from "../state/twin";
 import { button, h, icon, type IconName } from "../ui/dom";
 
@@ -42,8 +42,8 @@ export function transport(twin: Twin, playback: Playback): HTMLElement {
     slider.style.setProperty("--recorded", `${(100 * state.recording.last_s) / state.end_time_s}%`);
     slider.style.setProperty("--shown", `${(100 * at) / state.end_time_s}%`);
     slider.setAttribute("aria-valuetext", `${fixed(at, 2)} s of ${fixed(state.end_time_s, 0)} s${twin.replay_s.value === null ? ", live" : ", from the recording"}`);
-    const going = state.status === "running" && twin.replay_s.value === null && state.real_time_factor > 0;
-    const left = going && state.expected_end_s !== null ? aboutTime((state.expected_end_s - state.time_s) / state.real_time_factor) : "";
+    const going = state.status === "running" && twin.replay_s.value === null;
+    const left = going ? aboutTime(timeLeft(state)) : "";
     ends.lastElementChild?.replaceChildren(`${left ? `${left} left · ` : ""}${fixed(state.end_time_s, 0)} s`);
   };
   const showState = (): void => {

@@ -71,6 +71,7 @@ export interface State {
   end_time_s: number;
   /** When the run is expected to be over, from the motion of its debris; null before the first step and while debris outlasts the estimate. */
   expected_end_s: number | null;
+  wall_remaining_s: number | null;
   step: number;
   speed_factor: number | null;
   real_time_factor: number;

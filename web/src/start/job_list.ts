@@ -1,6 +1,6 @@
 // The jobs of the start page: what runs, how far it is, and what is finished.
 import type { Job } from "../protocol/start";
-import { aboutTime } from "../state/misfit";
+import { aboutTime } from "../state/time_left";
 import { button, h, icon } from "../ui/dom";
 
 export interface JobActions {

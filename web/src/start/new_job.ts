@@ -2,7 +2,8 @@
 import type { Api } from "../protocol/api";
 import type { JobEstimate, JobForm, JobKind, KnownScene, ValidationCase, WantedJob } from "../protocol/start";
 import { bytes } from "../state/format";
-import { aboutTime, firstRange, freeAtFirst } from "../state/misfit";
+import { firstRange, freeAtFirst } from "../state/misfit";
+import { aboutTime } from "../state/time_left";
 import { choice } from "../ui/choice";
 import { button, h } from "../ui/dom";
 import { rangeRow, rangesOf, type RangeRow } from "../ui/range_row";

@@ -1,5 +1,6 @@
 // Scale and texts of the misfit map of a calibration.
 import type { CalibrationStatus, Parameter } from "../protocol/messages";
+import { aboutTime } from "./time_left";
 
 /** Misfits range over decades, and near the best their differences matter most: a logarithm of 1 + misfit. */
 export class MisfitScale {
@@ -46,19 +47,12 @@ export function rangeProblem(parameter: Parameter, low: number, high: number): s
   return null;
 }
 
-/** "about 3 min": the estimate is not more accurate. */
-export function aboutTime(seconds: number | null): string {
-  if (seconds === null || !Number.isFinite(seconds)) return "";
-  if (seconds < 90) return `about ${Math.max(5, 5 * Math.round(seconds / 5))}\u202fs`;
-  if (seconds < 5400) return `about ${Math.round(seconds / 60)}\u202fmin`;
-  return `about ${Number((seconds / 3600).toPrecision(2))}\u202fh`;
-}
-
 const phases = { design: "spread over the ranges", search: "search for the best", check: "checks of the result" };
 
 /** Progress of a calibration, in a sentence. */
 export function progressText(status: CalibrationStatus): string {
   const fast = status.fast_runs_at_most > 0 ? `${status.fast_runs} of at most ${status.fast_runs_at_most} runs depth-averaged, ` : "";
+  const computed = `${status.runs.length} ${status.runs.length === 1 ? "run" : "runs"}`;
   const done = `${fast}${status.runs.length} of at most ${status.runs_at_most} runs${fast ? " of particles" : ""}`;
   const failed = status.runs_failed > 0 ? `, ${status.runs_failed} failed` : "";
   switch (status.state) {
@@ -68,8 +62,8 @@ export function progressText(status: CalibrationStatus): string {
       return `${done}${failed}${status.phase ? ` · ${phases[status.phase]}` : ""}${left ? ` · ${left} left at most` : ""}`;
     }
     case "cancelling": return `${done}${failed} · ends after the present step`;
-    case "cancelled": return `Cancelled after ${status.runs.length} runs${failed}`;
-    case "failed": return `Ended after ${status.runs.length} runs${failed}: ${status.message}`;
-    case "done": return `${status.runs.length} runs${failed}${status.result?.settled ? ": no further gain expected" : "; stopped at the maximum number"}${status.message ? `. ${status.message}` : ""}`;
+    case "cancelled": return `Cancelled after ${computed}${failed}`;
+    case "failed": return `Ended after ${computed}${failed}: ${status.message}`;
+    case "done": return `${computed}${failed}${status.result?.settled ? ": no further gain expected" : "; stopped at the maximum number"}${status.message ? `. ${status.message}` : ""}`;
   }
 }
