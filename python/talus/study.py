@@ -68,12 +68,12 @@ class _Clock:
         state = simulation.json("state")
         gone, simulated = time.monotonic() - self._start, simulation.time
         expected, remaining = state["expected_end_s"], state["wall_remaining_s"]
-        if remaining is None:  # debris outlasts the estimate: at the mean pace until the end
-            left = gone * max(0.0, end - simulated) / max(simulated, 1e-9)
-        elif expected > end:
-            left = remaining * max(0.0, end - simulated) / (expected - simulated)
+        if simulated >= end:
+            left = 0.0
+        elif remaining is None:  # debris outlasts the estimate: at the mean pace until the end
+            left = gone * (end - simulated) / max(simulated, 1e-9)
         else:
-            left = remaining
+            left = remaining * min(1.0, (end - simulated) / max(expected - simulated, 1e-9))
         self._share = max(self._share, gone / max(gone + left, 1e-9))
         done = "#" * int(40 * self._share)
         return f"[{done:40}] {simulated:.1f} s, about {int(left) // 60}:{int(left) % 60:02} left"
