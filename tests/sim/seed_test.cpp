@@ -29,6 +29,7 @@ TEST(Seeding, starts_at_rest_without_jumping_apart) {
     params::SolverSpec solver;
     Simulation simulation =
         testing::simulate({}, solver, terrain, {block(terrain, rectangle(10, 10, 18, 18), 1.2)}, 0.4);
+    EXPECT_EQ(simulation.state().max_speed, 0) << "m/s";
     const double before = potential_energy(simulation.model(), simulation.state());
     double highest = before, fastest = 0;
     for (int i = 0; i < 20; ++i) {
