@@ -131,8 +131,11 @@ bool Trial::advance_to(double time, const std::function<void()>& after_step) {
             if (problem_.empty()) problem_ = run_.stop_reason();
             stopped_ = on_fault_ == OnFault::stop || !std::isfinite(run_.summary().max_speed);
         }
-        if (!stopped_ && after_step) after_step();
+        if (stopped_ || !after_step) continue;
+        (void)state();
+        after_step();
     }
+    (void)state();
     return !stopped_;
 }
 

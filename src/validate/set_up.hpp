@@ -79,6 +79,7 @@ class Trial {
     void inject_inflow() { run_.inject_inflow(); }
 
     /// Steps until `time`, calling `after_step` after each. False when it stopped before: `problem` says why.
+    /// A reference to the state stays valid: debris that a device moves is copied before every call and at the end.
     bool advance_to(double time, const std::function<void()>& after_step = {});
 
     [[nodiscard]] const sim::Model& model() const { return run_.model(); }
