@@ -246,6 +246,10 @@ const MapAccumulator& Observer::maps() const {
     return parts_->maps;
 }
 
+const std::vector<GaugeRecord>& Observer::gauges() const {
+    return parts_->gauges.records();
+}
+
 const terrain::FlowPath& Observer::flow_path() const {
     return parts_->front.flow_path();
 }

@@ -64,6 +64,7 @@ class Observer final : public sim::StepWatcher {
     [[nodiscard]] std::vector<FrontSample> front() const;
     [[nodiscard]] const std::vector<BuildingImpact>& impacts() const;  ///< as in Ground::buildings
     [[nodiscard]] const MapAccumulator& maps() const;
+    [[nodiscard]] const std::vector<GaugeRecord>& gauges() const;
     [[nodiscard]] const terrain::FlowPath& flow_path() const;
 
     /// The complete results, with the debris in its current position as deposit.

@@ -120,6 +120,16 @@ void impacts(Session& session, const Request& request, const Respond& respond) {
         [time = *time](Scenarios& all, int index) { return json_response(200, all.at(index).impacts_json(time)); });
 }
 
+void gauges(Session& session, const Request& request, const Respond& respond) {
+    const auto time = number_of(request, "time_s", 0, 1e9);
+    if (!time) {
+        respond(error_response(400, time.error().message));
+        return;
+    }
+    ask(session, request, respond,
+        [time = *time](Scenarios& all, int index) { return json_response(200, all.at(index).gauges_json(time)); });
+}
+
 void action(Session& session, const Request& request, const Respond& respond) {
     change(session, request, respond, [&](const std::string& by) {
         auto wanted = parse_json(request.body);
@@ -153,6 +163,7 @@ void add_scenario_routes(Router& router, Session& session, Exports& exports) {
     };
     router.add({"GET", "/api/scenarios/{s}/frame", Role::viewer, with_session(frame), {"time_s"}});
     router.add({"GET", "/api/scenarios/{s}/impacts", Role::viewer, with_session(impacts), {"time_s"}});
+    router.add({"GET", "/api/scenarios/{s}/gauges", Role::viewer, with_session(gauges), {"time_s"}});
     router.add({"GET", "/api/scenarios/{s}/probe", Role::viewer, with_session(probe), {"x_m", "y_m"}});
     router.add({"GET", "/api/scenarios/{s}/figures", Role::viewer, with_session(figures)});
     router.add({"GET", "/api/scenarios/{s}/layers/{name}", Role::viewer, with_session(layer), {"time_s"}});

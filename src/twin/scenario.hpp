@@ -113,6 +113,8 @@ class Scenario {
     [[nodiscard]] nlohmann::json series_json() const;
     /// Without a time, s: now; otherwise at the recorded frame at or before it.
     [[nodiscard]] nlohmann::json impacts_json(std::optional<double> time = {}) const;
+    /// As impacts_json(): between two rows of the time series a gauge reads the former.
+    [[nodiscard]] nlohmann::json gauges_json(std::optional<double> time = {}) const;
     [[nodiscard]] nlohmann::json journal_json() const;
     [[nodiscard]] nlohmann::json recording_json() const;
 

@@ -11,6 +11,7 @@
 #include "geo/latitude.hpp"
 #include "report/intensity.hpp"
 #include "scene/viscosity_limit.hpp"
+#include "twin/gauges_json.hpp"
 #include "twin/json_keys.hpp"
 #include "twin/scenario_parts.hpp"
 
@@ -199,6 +200,7 @@ json Scenario::scene_json() const {
             {"gravity_mps2", model.gravity},
             {"flow_path", flow_path_json(scene)},
             {"observations", observations},
+            {"gauges", gauge_places(scene.gauges)},
             {"parameters", live_parameters_json(scene, model, parts_->setup().material)},
             {"settings", settings_json(scene)},
             {"intensity", intensity_json(guideline_of(scene))}};
@@ -277,7 +279,7 @@ json Scenario::series_json() const {
     front_column("arrival_time_s", &observe::FrontSample::arrival_time);
     front_column("front_velocity_mps", &observe::FrontSample::front_velocity);
     front_column("particle_speed_mps", &observe::FrontSample::particle_speed);
-    return with_short_numbers({{"time", time}, {"front", front}});
+    return with_short_numbers({{"time", time}, {"front", front}, {"gauges", gauge_curves(observer.gauges())}});
 }
 
 json Scenario::impacts_json(std::optional<double> time) const {

@@ -199,7 +199,7 @@ TEST_F(OpenApi, wrong_values_are_refused_as_described) {
     EXPECT_EQ(hand.get("/api/terrain?max_cells=1").status, 400);
     EXPECT_EQ(hand.get("/api/terrain?max_cells=99999999999").status, 400);
     EXPECT_EQ(hand.get("/api/scenarios/A/layers/nothing").status, 404);
-    for (const char* path : {"layers/peak_depth", "impacts", "frame"}) {
+    for (const char* path : {"layers/peak_depth", "impacts", "gauges", "frame"}) {
         const Answer answer = hand.get("/api/scenarios/A/" + std::string(path) + "?time_s=soon");
         EXPECT_EQ(answer.status, 400) << path;
         EXPECT_NE(answer.body.find("time_s = soon"), std::string::npos) << answer.body;

@@ -1,6 +1,6 @@
 import { describe, expect, it } from "vitest";
 import type { Parameter, Setup } from "../src/protocol/messages";
-import { differenceText } from "../src/state/comparison";
+import { comparisonRows, differenceText, type Side } from "../src/state/comparison";
 import { changesText, differences } from "../src/state/differences";
 
 const parameter = (key: string, label: string, unit = ""): Parameter =>
@@ -34,6 +34,18 @@ describe("differences of two scenarios", () => {
     expect(changesText(setup("A", 0.4))).toBe("");
     expect(changesText(setup("A", 0.27, { changes: [{ time_s: 30.31, by: "Ada", sentence: "friction coefficient 0.4 -> 0.27" }] })))
       .toBe("friction coefficient 0.4 -> 0.27 at 30.3 s");
+  });
+});
+
+describe("gauges in the table", () => {
+  const side = (arrival_s: number | null, peak_depth_m: number): Side => ({ setup: null, figures: [], impacts: null, points: [],
+    gauges: [{ name: "bridge", arrival_s, depth_m: 0, speed_mps: 0, peak_depth_m, peak_speed_mps: 3 * peak_depth_m },
+      { name: "dry", arrival_s: null, depth_m: 0, speed_mps: 0, peak_depth_m: 0, peak_speed_mps: 0 }] });
+  it("have arrival and peaks of both; those that debris reached in neither are left out", () => {
+    expect(comparisonRows(side(12, 2), side(null, 0), [])).toEqual([
+      { group: "Gauges", name: "bridge, arrival", unit: "s", a: 12, b: null },
+      { group: "Gauges", name: "bridge, peak depth", unit: "m", a: 2, b: 0 },
+      { group: "Gauges", name: "bridge, peak speed", unit: "m/s", a: 6, b: 0 }]);
   });
 });
 

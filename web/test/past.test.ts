@@ -5,6 +5,7 @@ import { seriesUntil, stateAt } from "../src/state/past";
 const series: Series = {
   time: { time_s: [0, 0.1, 0.2, 0.3], volume_moving_m3: [0, 10, 20, 30], volume_held_m3: [40, 30, 20, 10], volume_entrained_m3: [0, 0, 4, 8], front_chainage_m: [null, 1, 2, 3] },
   front: { chainage_m: [1, 2, 3], arrival_time_s: [0.1, 0.25, 0.2], front_velocity_mps: [5, 6, 7], particle_speed_mps: [8, 9, null] },
+  gauges: { time_s: [0, 0.2], depth_m: [[0, 0.5], [0, 0]] },
 };
 const now = { time_s: 9, volume_moving_m3: 99, volume_held_m3: 0, volume_entrained_m3: 50, volume_left_m3: 3, front_chainage_m: 50, front_velocity_mps: 4, too_compressed: false } as State;
 
@@ -14,6 +15,9 @@ describe("what was known at an earlier time", () => {
     const past = seriesUntil(series, 0.2);
     expect(past?.time["volume_moving_m3"]).toEqual([0, 10, 20]);
     expect(past?.time["front_chainage_m"]).toEqual([null, 1, 2]);
+  });
+  it("has the depths at gauges until then", () => {
+    expect(seriesUntil(series, 0.15)?.gauges).toEqual({ time_s: [0], depth_m: [[0], [0]] });
   });
   it("has the chainages that the front had reached, also out of order", () => {
     const past = seriesUntil(series, 0.22);

@@ -22,6 +22,8 @@ async function readPast(page, server, last) {
   await until(() => page.textContent(".tab-panel:visible"), (t) => t.includes(`As of ${time.toFixed(1)} s.`), "impacts of then");
   const untouched = await page.locator(".impacts").last().locator("tbody tr.untouched").count();
   assert.equal(untouched, impacts.buildings.filter((b) => !b.hit).length);
+  const { gauges } = await server.ask(`scenarios/A/gauges?time_s=${time}`);
+  assert.deepEqual(await page.locator(".gauges tbody td:nth-child(2)").allTextContents(), gauges.map((g) => (g.arrival_s === null ? "–" : g.arrival_s.toFixed(1))));
   const legend = page.locator(".legend").last();
   for (const [layer, words] of [["peak_depth", "Peak depth until"], ["depth", "Depth at"], ["arrival_time", "Arrival time until"]]) {
     await page.selectOption("select[aria-label^='Map layer']", layer);
@@ -135,8 +137,8 @@ export async function testReadings(run) {
     assert.ok(seen.different > 40, `${seen.different} colours in the chart`);
     await page.keyboard.press("ArrowRight");
     assert.equal(await page.locator("[role=tab][aria-selected=true]").getAttribute("data-tab"), "time");
-    const labels = await until(() => page.locator(".tab-panel:visible .chart-plot:visible").evaluateAll((l) => l.map((e) => e.getAttribute("aria-label"))), (l) => l.length === 3 && l.every(Boolean), "three charts");
-    for (const words of [/Moving from .* m³/, /speed from .* m\/s/, /Kinetic from .* MJ/]) assert.ok(labels.some((l) => words.test(l)), `${words} in ${labels}`);
+    const labels = await until(() => page.locator(".tab-panel:visible .chart-plot:visible").evaluateAll((l) => l.map((e) => e.getAttribute("aria-label"))), (l) => l.length === 4 && l.every(Boolean), "four charts");
+    for (const words of [/Moving from .* m³/, /speed from .* m\/s/, /Kinetic from .* MJ/, /marks in the gully from 0 to .* m/]) assert.ok(labels.some((l) => words.test(l)), `${words} in ${labels}`);
     await run.shot(page, "8-time");
   });
 
@@ -187,6 +189,21 @@ export async function testReadings(run) {
       await run.shot(page, "11-impact");
       await page.click("[aria-label='Fit']");
     }
+  });
+
+  await run.check("gauges: a row each with what the server says, now and in the past, and a name in the view", async () => {
+    const rows = () => page.locator(".gauges tbody tr").evaluateAll((list) => list.map((tr) => [...tr.children].map((cell) => cell.textContent)));
+    const told = async () => (await server.ask("scenarios/A/gauges")).gauges.map((g) => [g.name, g.arrival_s === null ? "–" : g.arrival_s.toFixed(1), g.depth_m.toFixed(2), g.peak_depth_m.toFixed(2), g.peak_speed_mps.toFixed(1)]);
+    const wanted = await told();
+    assert.ok(wanted.length === 3 && Number(wanted[0][3]) > 0.3, wanted.join("; "));
+    await until(rows, (list) => list.join() === wanted.join(), wanted.join());
+    await page.click("[aria-label='Top view']");
+    await run.still(page, clip);
+    // Also where a front velocity was observed at the same place.
+    assert.deepEqual((await page.locator(".label.gauge:not(.off)").allTextContents()).sort(), wanted.map(([name]) => name).sort(), "names in the plan");
+    await run.shot(page, "11-gauges");
+    await page.keyboard.press("1");
+    await page.click("[aria-label='Fit']");
   });
 
   await run.check("mass balance adds up, and the numbers of the run have units", async () => {

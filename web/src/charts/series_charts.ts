@@ -2,7 +2,7 @@
 import type { Column } from "../protocol/messages";
 import { watchAll } from "../state/cell";
 import { seriesUntil } from "../state/past";
-import type { Twin } from "../state/twin";
+import { probeColours, type Twin } from "../state/twin";
 import { h } from "../ui/dom";
 import { Chart, joined, type Curve } from "./chart";
 
@@ -77,7 +77,8 @@ export function timeCharts(twin: Twin): HTMLElement {
   const volume = new Chart({ title: "Volumes", x: time, y: { label: "Volume", unit: "m3" }, curves: [], empty: "No time series yet: run the simulation." });
   const speed = new Chart({ title: "Speed", x: time, y: { label: "Speed", unit: "m/s" }, curves: [], empty: "No speeds yet." });
   const energy = new Chart({ title: "Energy", x: time, y: { label: "Energy", unit: "MJ" }, curves: [], empty: "No energies yet." });
-  const all = [volume, speed, energy];
+  const gauges = new Chart({ title: "Depth at the gauges", x: time, y: { label: "Depth", unit: "m" }, curves: [], empty: "No debris at the gauges yet." });
+  const all = [volume, speed, energy, ...(twin.scene.gauges.length > 0 ? [gauges] : [])];
   watchAll([twin.shown, ...twin.every("series"), ...twin.every("setup"), twin.replay_s], () => {
     const two = twin.shown.value.length > 1;
     const put = (chart: Chart, list: Plotted[], unit: string, factor = 1): void => {
@@ -96,6 +97,12 @@ export function timeCharts(twin: Twin): HTMLElement {
       chart.update(tables.length > 0 ? joined(tables) : [[]], curves);
       chart.markChanges(twin.shown.value.flatMap((name) => twin.cells[name].setup.value?.changes.map((c) => c.time_s) ?? []));
     };
+    const depths = twin.shown.value.flatMap((name, i) => {
+      const series = seriesUntil(twin.cells[name].series.value, twin.replay_s.value);
+      return probeColours.slice(0, series?.gauges.depth_m.length ?? 0).map((colour, k) => ({ table: { x: series?.gauges.time_s ?? [], y: series?.gauges.depth_m[k] ?? [] },
+        curve: { label: `${twin.scene.gauges[k].name}${two ? ` ${name}` : ""}`, colour, unit: "m", dashed: i === 1 } }));
+    });
+    gauges.update(depths.length > 0 ? joined(depths.map((d) => d.table)) : [[]], depths.map((d) => d.curve));
     put(volume, volumes, "m3");
     put(speed, [{ column: "largest_speed_mps", label: "Largest speed", colour: "#0b5fa5" }], "m/s");
     put(energy, [{ column: "kinetic_energy_J", label: "Kinetic", colour: "#d1640f" }, { column: "potential_energy_J", label: "Potential", colour: "#11795a" }], "MJ", 1e-6);

@@ -48,7 +48,7 @@ export class ComparePanel {
     const shown = h("div", {}, h("div", { class: "row" }, report), this.notEqual, table, this.rest,
       h("p", { class: "hint" }, `${pressures} Figures are those of the runs as far as they have come.`));
     this.element = h("div", {}, none, shown);
-    watchAll([twin.shown, ...twin.every("impacts"), ...twin.every("setup"), ...twin.every("state"), twin.probes], () => {
+    watchAll([twin.shown, ...twin.every("impacts"), ...twin.every("gauges"), ...twin.every("setup"), ...twin.every("state"), twin.probes], () => {
       shown.hidden = twin.shown.value.length < 2;
       none.hidden = !shown.hidden;
       this.draw();
@@ -73,8 +73,8 @@ export class ComparePanel {
     this.draw();
   }
   private side(name: ScenarioName): Side {
-    const { setup, impacts } = this.twin.cells[name];
-    return { setup: setup.value, impacts: impacts.value, figures: this.figures.get(name) ?? [], points: this.twin.probes.value.map((p, i) => peaksOf(p, i, name)) };
+    const { setup, impacts, gauges } = this.twin.cells[name];
+    return { setup: setup.value, impacts: impacts.value, gauges: gauges.value ?? [], figures: this.figures.get(name) ?? [], points: this.twin.probes.value.map((p, i) => peaksOf(p, i, name)) };
   }
   private draw(): void {
     const { twin } = this;

@@ -31,6 +31,8 @@ export interface Parameter {
   help: string;
 }
 export interface Observation { name: string; chainage_m: number; front_velocity_mps: number; source: string }
+/** chainage_m: null: given as a place. */
+export interface Gauge { name: string; x_m: number; y_m: number; chainage_m: number | null }
 export interface FlowPath { points: Place[]; chainage_m: number[]; corridor_width_m: number; traced: boolean }
 export interface Category { name: string; colour: string }
 export interface IntensityClass extends Category { criterion: string }
@@ -54,6 +56,7 @@ export interface SceneInfo {
   gravity_mps2: number;
   flow_path: FlowPath | null;
   observations: Observation[];
+  gauges: Gauge[];
   /** Whether there is an orthophoto. */
   orthophoto: boolean;
   parameters: Parameter[];
@@ -204,10 +207,15 @@ export interface BarrierImpact extends Impact {
 export interface RemovedImpact extends Impact { kind: "building" | "barrier"; removed_s: number; overtopped_m3?: number; held_m3?: number }
 export interface Impacts { buildings: Impact[]; barriers: BarrierImpact[]; removed: RemovedImpact[] }
 
+/** What passed a gauge, and what is there. */
+export interface GaugeReading { name: string; arrival_s: number | null; depth_m: number; speed_mps: number; peak_depth_m: number; peak_speed_mps: number }
+
 export type Column = (number | null)[];
 export interface Series {
   time: Record<string, Column>;
   front: { chainage_m: Column; arrival_time_s: Column; front_velocity_mps: Column; particle_speed_mps: Column };
+  /** A column of depths per gauge of the scene. */
+  gauges: { time_s: Column; depth_m: Column[] };
 }
 export interface ProbeSeries { time_s: Column; depth_m: Column; speed_mps: Column; pressure_kPa: Column }
 export interface Recording { times_s: number[]; bytes: number }

@@ -9,12 +9,17 @@ export interface Label {
   /** Local place. */
   at: Place;
   text: string;
-  kind: "chainage" | "observation" | "release" | "house" | "probe" | "person" | "barrier" | "zone" | "bed" | "inflow";
+  kind: "chainage" | "observation" | "release" | "house" | "probe" | "person" | "barrier" | "zone" | "bed" | "inflow" | "gauge";
   colour?: string;
   priority: number;
+  /** It hangs below its place instead of standing on it. */
+  below?: boolean;
   /** Distance beyond which the label is hidden, m. */
   farthest?: number;
 }
+
+/** Below its place, so that a label above the same place leaves it room, px. */
+const hangs_px = 4;
 
 export type Box = readonly [number, number, number, number];
 interface Shown extends Label { element: HTMLElement; width: number; height: number }
@@ -51,8 +56,9 @@ export class Labels {
       seen.set(...label.at).project(camera);
       const x = ((seen.x + 1) / 2) * width;
       const y = ((1 - seen.y) / 2) * height;
-      // The anchor of a label is the middle of its lower edge.
-      const box: Box = [x - label.width / 2, y - label.height, x + label.width / 2, y];
+      // The anchor of a label is the middle of its lower edge, unless it hangs below.
+      const top = label.below ? y + hangs_px : y - label.height;
+      const box: Box = [x - label.width / 2, top, x + label.width / 2, top + label.height];
       const visible =
         seen.z < 1 && box[0] > 2 && box[1] > 2 && box[2] < width - 2 && box[3] < height - 2 &&
         !taken.some((t) => box[0] < t[2] + 3 && box[2] > t[0] - 3 && box[1] < t[3] + 2 && box[3] > t[1] - 2) &&

@@ -219,6 +219,10 @@ export class ScenarioView {
             kind: "observation", priority: 6 });
         }
       }
+      // Below their places, where observed front velocities and chainages of the same places do not hide them.
+      for (const gauge of scene.gauges) {
+        labels.push({ at: relief.local(gauge.x_m, gauge.y_m, 0.5), text: gauge.name, kind: "gauge", priority: 5, below: true });
+      }
       for (const release of this.setup?.releases ?? []) {
         if (release.id === this.selected) continue;
         const ring = release.polygons[0] ?? [];

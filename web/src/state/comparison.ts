@@ -1,10 +1,10 @@
-// What two scenarios have come to, side by side: figures, houses, barriers, points.
-import type { Figure, Impact, BarrierImpact, Impacts, Parameter, Setup } from "../protocol/messages";
+// What two scenarios have come to, side by side: figures, houses, barriers, gauges, points.
+import type { Figure, GaugeReading, Impact, BarrierImpact, Impacts, Parameter, Setup } from "../protocol/messages";
 import { differingKeys } from "./differences";
 import { fixed, number } from "./format";
 
 export interface Row { group: string; name: string; unit: string; a: number | string | null; b: number | string | null }
-export interface Side { setup: Setup | null; figures: readonly Figure[]; impacts: Impacts | null; points: readonly PointPeaks[] }
+export interface Side { setup: Setup | null; figures: readonly Figure[]; impacts: Impacts | null; gauges: readonly GaugeReading[]; points: readonly PointPeaks[] }
 /** Peaks at a probe. */
 export interface PointPeaks { name: string; depth_m: number | null; speed_mps: number | null; pressure_kPa: number | null }
 
@@ -26,6 +26,7 @@ const atHouses: readonly Measure<Impact>[] = [["impact pressure", "kPa", (i) => 
   ["depth", "m", (i) => i.peak_depth_m], ["hit at", "s", (i) => i.first_hit_s]];
 const atBarriers: readonly Measure<BarrierImpact>[] = [["force", "kN", (i) => i.peak_force_kN], ["held", "m3", (i) => i.held_m3], ["over", "m3", (i) => i.overtopped_m3],
   ["through", "m3", (i) => i.passed_m3], ["failed at", "s", (i) => i.failed_s]];
+const atGauges: readonly Measure<GaugeReading>[] = [["arrival", "s", (g) => g.arrival_s], ["peak depth", "m", (g) => g.peak_depth_m], ["peak speed", "m/s", (g) => g.peak_speed_mps]];
 const atPoints: readonly Measure<PointPeaks>[] = [["peak depth", "m", (p) => p.depth_m], ["peak speed", "m/s", (p) => p.speed_mps], ["peak dynamic pressure", "kPa", (p) => p.pressure_kPa]];
 
 /** Rows of what is in either list; values that neither has are left out. */
@@ -51,8 +52,11 @@ export function comparisonRows(a: Side, b: Side, parameters: readonly Parameter[
   const hit = (side: Side): Impact[] => (side.impacts?.buildings ?? []);
   const reached = new Set([...hit(a), ...hit(b)].filter((i) => i.hit).map((i) => i.id));
   const houses = (side: Side): Impact[] => hit(side).filter((i) => reached.has(i.id));
+  const wet = new Set([...a.gauges, ...b.gauges].filter((g) => g.peak_depth_m > 0).map((g) => g.name));
+  const gauges = (side: Side): GaugeReading[] => side.gauges.filter((g) => wet.has(g.name));
   return [...given, ...figures, ...paired("Houses", (i: Impact) => i.id, houses(a), houses(b), atHouses),
     ...paired("Barriers", (i: BarrierImpact) => i.id, a.impacts?.barriers ?? [], b.impacts?.barriers ?? [], atBarriers),
+    ...paired("Gauges", (g: GaugeReading) => g.name, gauges(a), gauges(b), atGauges),
     ...paired("Points", (p: PointPeaks) => p.name, a.points, b.points, atPoints)];
 }
 

@@ -15,7 +15,9 @@ export function seriesUntil(series: Series | null, time_s: number | null): Serie
   const { arrival_time_s } = series.front;
   const there = (column: Column): Column => column.filter((_, k) => (arrival_time_s[k] ?? Infinity) <= until);
   const { chainage_m, front_velocity_mps, particle_speed_mps } = series.front;
-  return { time, front: { chainage_m: there(chainage_m), arrival_time_s: there(arrival_time_s), front_velocity_mps: there(front_velocity_mps),
+  const { gauges } = series;
+  const passed = kept(gauges.time_s);
+  return { time, gauges: { time_s: gauges.time_s.slice(0, passed), depth_m: gauges.depth_m.map((column) => column.slice(0, passed)) }, front: { chainage_m: there(chainage_m), arrival_time_s: there(arrival_time_s), front_velocity_mps: there(front_velocity_mps),
     particle_speed_mps: there(particle_speed_mps) } };
 }
 

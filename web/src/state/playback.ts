@@ -68,10 +68,11 @@ export class Playback {
       const fine = await this.twin.attempt(async () => {
         const { api, cells } = this.twin;
         await Promise.all(this.twin.shown.value.map(async (name: ScenarioName) => {
-          const [frame, impacts] = await Promise.all([api.frame(name, time), api.impacts(name, time)]);
+          const [frame, [impacts, gauges]] = await Promise.all([api.frame(name, time), this.twin.readings(name, time)]);
           if (this.twin.replay_s.value === null) return;
           this.twin.showFrame(frame);
           cells[name].impacts.value = impacts;
+          cells[name].gauges.value = gauges;
           if (name === this.twin.edited.value) this.twin.replaySqueezed.value = (frame.flags & tooCompressed) !== 0;
         }));
       });

@@ -2,7 +2,7 @@
 import { Api, Refused } from "../protocol/api";
 import { scenarioNames, type Frame, type ScenarioName } from "../protocol/frame";
 import { Live, type Connection } from "../protocol/live";
-import type { Action, Alerts, CalibrationStatus, DepthAveragedStatus, Done, Ensemble, Impacts, Person, Place, Point, ProbeSeries, SceneInfo, Series, ServerMessage, Session, Setup, ShownLayer, State, You } from "../protocol/messages";
+import type { Action, Alerts, CalibrationStatus, DepthAveragedStatus, Done, Ensemble, GaugeReading, Impacts, Person, Place, Point, ProbeSeries, SceneInfo, Series, ServerMessage, Session, Setup, ShownLayer, State, You } from "../protocol/messages";
 import { usualMoment, type Moment } from "../scene/natural/sun";
 import type { StartPage } from "../protocol/start";
 import type { Relief } from "../scene/relief";
@@ -19,6 +19,7 @@ export interface ScenarioCells {
   setup: Cell<Setup | null>;
   series: Cell<Series | null>;
   impacts: Cell<Impacts | null>;
+  gauges: Cell<readonly GaugeReading[] | null>;
   /** Of the depth-averaged model of its setup; null, or off: not computed. */
   depthAveraged: Cell<DepthAveragedStatus | null>;
 }
@@ -165,6 +166,10 @@ export class Twin {
   /** Whether any of the scenarios shown runs. */
   get running(): boolean {
     return this.shown.value.some((name) => this.cells[name].state.value?.status === "running");
+  }
+  /** What structures and gauges have met until a time, or until now; a scene without gauges is not asked about them. */
+  readings(s: ScenarioName, time_s: number | null): Promise<[Impacts, readonly GaugeReading[]]> {
+    return Promise.all([this.api.impacts(s, time_s), this.scene.gauges.length > 0 ? this.api.gauges(s, time_s) : []]);
   }
   /** The state at the displayed time. */
   shownState(scenario: ScenarioName = this.edited.value): State | null {
@@ -327,5 +332,5 @@ export class Twin {
 
 function emptyCells(): ScenarioCells {
   return { state: new Cell<State | null>(null), setup: new Cell<Setup | null>(null), series: new Cell<Series | null>(null), impacts: new Cell<Impacts | null>(null),
-    depthAveraged: new Cell<DepthAveragedStatus | null>(null) };
+    gauges: new Cell<readonly GaugeReading[] | null>(null), depthAveraged: new Cell<DepthAveragedStatus | null>(null) };
 }

@@ -1,0 +1,17 @@
+#pragma once
+
+#include <vector>
+
+#include <nlohmann/json.hpp>
+
+#include "observe/observation.hpp"
+#include "terrain/gauge.hpp"
+
+namespace talus::twin {
+
+/// `gauges` of GET /api/scene.
+[[nodiscard]] nlohmann::json gauge_places(const std::vector<terrain::Gauge>& gauges);
+/// `gauges` of GET /api/scenarios/{s}/series: at most 600 rows.
+[[nodiscard]] nlohmann::json gauge_curves(const std::vector<observe::GaugeRecord>& records);
+
+}  // namespace talus::twin

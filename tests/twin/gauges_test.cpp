@@ -1,0 +1,98 @@
+#include "twin/gauges_json.hpp"
+#include "twin_fixtures.hpp"
+
+namespace talus::twin::test {
+namespace {
+
+/// One on the flow path, one on a bank that debris does not reach.
+scene::Scene gauged_scene() {
+    scene::Scene scene = channel_scene();
+    scene.gauges = {{"in the channel", {west + 45, south + 30}, 40}, {"on the bank", {west + 60, south + 55}}};
+    return scene;
+}
+
+TEST(Gauges, are_told_with_the_scene) {
+    const json gauges = open(gauged_scene())->scene_json()["gauges"];
+    ASSERT_EQ(gauges.size(), 2U);
+    EXPECT_EQ(gauges[0],
+              (json{{"name", "in the channel"}, {"x_m", west + 45}, {"y_m", south + 30}, {"chainage_m", 40.0}}));
+    EXPECT_EQ(gauges[1]["chainage_m"], nullptr) << "given as a place";
+    EXPECT_EQ(open(channel_scene())->gauges_json()["gauges"], json::array());
+}
+
+TEST(Gauges, read_what_passes_as_the_record_of_the_run_has_it) {
+    const auto scenario = open(gauged_scene());
+    double arrival = NAN, deepest = 0, fastest = 0;
+    while (scenario->time() < 8 && scenario->phase() == run::RunPhase::ready) {
+        scenario->advance();
+        const json now = scenario->gauges_json()["gauges"][0];
+        deepest = std::max(deepest, now["depth_m"].get<double>());
+        fastest = std::max(fastest, now["speed_mps"].get<double>());
+        if (std::isnan(arrival) && !now["arrival_s"].is_null()) arrival = scenario->time();
+    }
+    const json gauges = scenario->gauges_json()["gauges"];
+    EXPECT_GT(deepest, 0.2);
+    EXPECT_GT(fastest, 2);
+    EXPECT_EQ(gauges[0]["peak_depth_m"], deepest);
+    EXPECT_EQ(gauges[0]["peak_speed_mps"], fastest);
+    EXPECT_EQ(gauges[0]["arrival_s"], arrival);
+    EXPECT_EQ(gauges[1], (json{{"name", "on the bank"},
+                               {"arrival_s", nullptr},
+                               {"depth_m", 0.0},
+                               {"speed_mps", 0.0},
+                               {"peak_depth_m", 0.0},
+                               {"peak_speed_mps", 0.0}}));
+    const json curves = scenario->series_json()["gauges"];
+    ASSERT_EQ(curves["depth_m"].size(), 2U);
+    EXPECT_EQ(curves["time_s"], scenario->series_json()["time"]["time_s"]);
+    EXPECT_EQ(curves["depth_m"][0].size(), curves["time_s"].size());
+}
+
+TEST(Gauges, of_an_earlier_time_know_nothing_of_what_came_later) {
+    const auto scenario = open(gauged_scene());
+    run_until(*scenario, 8);
+    const json now = scenario->gauges_json()["gauges"][0];
+    const double arrival = now["arrival_s"];
+    const json before = scenario->gauges_json(arrival - 0.2)["gauges"][0];
+    EXPECT_EQ(before["arrival_s"], nullptr);
+    EXPECT_LT(before["peak_depth_m"], 0.05);
+    const json soon = scenario->gauges_json(arrival + 0.2)["gauges"][0];
+    EXPECT_EQ(soon["arrival_s"], arrival);
+    EXPECT_GT(soon["depth_m"], 0);
+    EXPECT_LE(soon["peak_depth_m"], now["peak_depth_m"]);
+    const json end = scenario->gauges_json(scenario->time())["gauges"][0];
+    EXPECT_EQ(end["peak_depth_m"], now["peak_depth_m"]) << "also of a step between two rows";
+}
+
+TEST(Gauges, curves_of_a_long_run_stay_short) {
+    std::vector<observe::GaugeRecord> records(2);
+    for (int row = 0; row < 2500; ++row) {
+        for (observe::GaugeRecord& record : records) record.rows.push_back({0.1 * row, 0.001 * row, 0});
+    }
+    const json curves = gauge_curves(records);
+    EXPECT_EQ(curves["time_s"].size(), 500U);
+    EXPECT_EQ(curves["depth_m"][1].size(), 500U);
+    EXPECT_EQ(curves["time_s"][1], 0.5);
+    EXPECT_EQ(curves["depth_m"][1][1], 0.005);
+}
+
+TEST(Gauges, are_empty_again_after_a_restart_and_in_a_new_scenario) {
+    const auto scenario = open(gauged_scene());
+    const json first = scenario->gauges_json();
+    run_until(*scenario, 6);
+    ASSERT_NE(scenario->gauges_json(), first);
+    EXPECT_EQ((*scenario->copy())->gauges_json(), first);
+    act(*scenario, {{"action", "restart"}});
+    EXPECT_EQ(scenario->gauges_json(), first);
+    EXPECT_EQ(scenario->series_json()["gauges"]["time_s"], json::array({0.0}));
+}
+
+TEST(Gauges, change_nothing_of_the_run) {
+    const auto with = open(gauged_scene()), without = open(channel_scene());
+    run_until(*with, 3);
+    run_until(*without, 3);
+    EXPECT_EQ(with->hash(), without->hash());
+}
+
+}  // namespace
+}  // namespace talus::twin::test
