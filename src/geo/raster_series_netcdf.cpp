@@ -67,7 +67,9 @@ class NetcdfFile {
         options.SetNameValue("BLOCKSIZE", chunk.c_str());
         auto array = root_->CreateMDArray(name, dimensions, GDALExtendedDataType::Create(GDT_Float32), options.List());
         if (!array) return nullptr;
-        if (reference.IsEmpty() == 0 && !array->SetSpatialRef(&reference)) return nullptr;
+        // The conventions describe systems on the globe alone: with a local one there are just metres.
+        const bool on_globe = reference.IsEmpty() == 0 && reference.IsLocal() == 0;
+        if (on_globe && !array->SetSpatialRef(&reference)) return nullptr;
         const bool described =
             array->SetNoDataValue(std::nan("")) && array->SetUnit(unit) && write_attributes(*array, attributes);
         return described ? array : nullptr;

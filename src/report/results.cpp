@@ -223,8 +223,8 @@ Json quality(const scene::Scene& scene, const run::RunResult& result, const run:
     Json all = {
         fact("Status", result.stop_reason.empty() ? state : state + ("; " + result.stop_reason)),
         fact("Simulated time",
-             fmt::format("{} s in {} s of wall time, {} steps of {} to {} ms", fixed(result.simulated_time, 1),
-                         fixed(result.wall_time, 1), fixed(static_cast<double>(result.steps), 0),
+             fmt::format("{} s in {} s of wall time, {} of {} to {} ms", fixed(result.simulated_time, 1),
+                         fixed(result.wall_time, 1), plural(result.steps, "step"),
                          fixed(1e3 * result.smallest_time_step, 2), fixed(1e3 * result.largest_time_step, 2))),
         fact("Real-time factor",
              significant(result.real_time_factor(), 3) + " (simulated over wall time; 1 is real time)"),

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <limits>
 #include <utility>
 
 #include <fmt/format.h>
@@ -51,7 +52,7 @@ Run::Run(RunStart start)
       outputs_(start.outputs),
       followed_corridor_width_(start.followed_corridor_width),
       endless_(start.endless),
-      smallest_time_step_(model().solver.end_time) {
+      smallest_time_step_(std::numeric_limits<double>::infinity()) {
     observer_.watch(start.gauges);
     observer_.expect(summary().seeded + simulation_.inflow().remaining());
     if (no_debris()) stop(RunPhase::at_rest, "there is no debris");

@@ -18,17 +18,22 @@ namespace {
 constexpr double coarsest_default_cell = 2.5;
 constexpr double most_cells = 1e8;
 
-std::optional<Lacking> lacking_structure(const terrain::Building& building) {
-    const auto lacking = [&](std::string_view key, std::string_view which) {
-        return Lacking{building.barrier ? "barrier" : "buildings.file",
-                       fmt::format("{}, and \"{}\" {}", depth_averaged_key(key)->why, building.name, which)};
+/// `section`: of the structure, "barrier[2]" or "buildings".
+std::optional<Lacking> lacking_structure(const Scene& scene, const terrain::Building& building,
+                                         const std::string& section) {
+    const auto lacking = [&](const std::string& key, std::string_view which) {
+        const std::string_view why = depth_averaged_key((building.barrier ? "barrier." : "buildings.") + key)->why;
+        return Lacking{fmt::format("{}.{}", section, key), fmt::format("{}, and \"{}\" {}", why, building.name, which)};
     };
-    if (building.barrier && building.barrier->passing_share) return lacking("barrier.passing_share", "is one");
-    if (building.barrier && building.barrier->clearance) return lacking("barrier.clearance_m", "has a clearance");
-    if (building.resistance != terrain::Resistance{}) {
-        return lacking(building.barrier ? "barrier.resistance_Pa" : "buildings.resistance_Pa", "has a resistance");
-    }
-    return {};
+    if (building.barrier && building.barrier->passing_share) return lacking("passing_share", "is one");
+    if (building.barrier && building.barrier->clearance) return lacking("clearance_m", "has a clearance");
+    if (building.resistance == terrain::Resistance{}) return {};
+    const bool per_metre = std::isfinite(building.resistance.force_per_metre);
+    const bool of_each = !building.barrier && !scene.spec.buildings.resistance_attribute.empty();
+    return lacking(per_metre ? "resistance_Npm"
+                   : of_each ? "resistance_attribute"
+                             : "resistance_Pa",
+                   "has a resistance");
 }
 
 }  // namespace
@@ -44,8 +49,10 @@ std::optional<Lacking> depth_averaged_lacks(const Scene& scene) {
         return Lacking{fmt::format("release[{}].pore_pressure_ratio", k),
                        std::string(depth_averaged_key("release.pore_pressure_ratio")->why)};
     }
+    std::size_t barriers = 0;
     for (const terrain::Building& building : scene.buildings) {
-        if (auto lacking = lacking_structure(building)) return lacking;
+        const std::string section = building.barrier ? fmt::format("barrier[{}]", barriers++) : "buildings";
+        if (auto lacking = lacking_structure(scene, building, section)) return lacking;
     }
     return {};
 }

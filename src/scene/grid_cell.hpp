@@ -16,7 +16,7 @@ namespace talus::scene {
 
 /// Something of a scene that this model does not have.
 struct Lacking {
-    std::string key;  ///< at fault: "barrier"
+    std::string key;  ///< at fault: "barrier[2].passing_share"
     std::string why;  ///< ends a sentence that begins with the model: "has no nets, and "dam" is one"
 };
 /// The first that a loaded scene needs; nothing: the model can run it.

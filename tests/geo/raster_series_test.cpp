@@ -112,6 +112,21 @@ TEST(RasterSeries, NetcdfFollowsTheConventions) {
     EXPECT_EQ(row_of(*ground, 1, 0)[0], 55);
 }
 
+TEST(RasterSeries, NetcdfOfALocalSystemHasMetresAlone) {
+    const TemporaryFolder folder;
+    const std::string file = folder.file("maps.nc");
+    SeriesFile local = series();
+    local.crs = {};
+    local.crs.name = "flume";
+    local.crs.wkt = R"(LOCAL_CS["flume",UNIT["metre",1]])";
+    const Status status = write_netcdf_series(file, local, Grid<float>(cells, 55), {depth()});
+    ASSERT_TRUE(status.ok()) << status.error().message;
+    const GDALDatasetUniquePtr data(GDALDataset::Open(("NETCDF:" + file + ":depth").c_str()));
+    ASSERT_NE(data, nullptr);
+    EXPECT_EQ(data->GetRasterCount(), 3);
+    EXPECT_EQ(data->GetMetadataItem("depth#grid_mapping"), nullptr);
+}
+
 TEST(RasterSeries, FailureNamesTheFileAndLeavesNone) {
     const TemporaryFolder folder;
     RasterSeries broken = depth();

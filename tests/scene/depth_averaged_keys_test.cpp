@@ -95,7 +95,9 @@ TEST_F(DepthAveragedScene, refuses_what_the_model_lacks) {
         ASSERT_TRUE(scenes.contains(std::string(entry.key))) << entry.key << " has no scene here";
         write_valley(scenes.at(std::string(entry.key)));
         EXPECT_THAT(load_error({"solver.model=depth_averaged"}),
-                    testing::AllOf(HasSubstr("the depth-averaged model " + std::string(entry.why)),
+                    testing::AllOf(testing::ContainsRegex(":[0-9]+: (release|barrier)?\\[?0?\\]?.*" +
+                                                          std::string(entry.key.substr(entry.key.find('.')))),
+                                   HasSubstr("the depth-averaged model " + std::string(entry.why)),
                                    HasSubstr("remove it, or use solver.model = \"particles\"")))
             << entry.key;
         EXPECT_EQ(load_error(), "(it loaded)") << entry.key;

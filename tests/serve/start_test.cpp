@@ -162,8 +162,9 @@ TEST_F(StartPage, a_file_of_the_command_line_opens_at_once_and_who_ends_the_prog
     EXPECT_EQ(page()["scenes"][0]["kind"], "builtin");
     EXPECT_EQ(hand().ask("POST", "/api/quit").status, 200);
     answered = true;
-    server_.reset();  // on_quit has come to its end
+    for (int i = 0; i < 200 && !quit_; ++i) std::this_thread::sleep_for(std::chrono::milliseconds(25));
     EXPECT_TRUE(quit_);
+    server_.reset();  // which on_quit refers to
 }
 
 TEST(Library, names_of_files_have_no_path) {
