@@ -11,6 +11,7 @@
 #include "core/hash.hpp"
 #include "core/number_or_null.hpp"
 #include "products/results_json.hpp"
+#include "report/results.hpp"
 #include "sim/compression.hpp"
 #include "variant_plan.hpp"
 #include "zoom_text.hpp"
@@ -124,8 +125,7 @@ std::string summary_text(const scene::Scene& scene, const run::RunResult& result
     }
     for (const params::ObservationSpec& observed : scene.spec.observations) {
         const observe::FrontSample front = front_at(seen, observed.chainage);
-        const bool outside = !scene.flow_path.empty() && !result.covers(scene.flow_path.point_at(observed.chainage));
-        const std::string computed = outside ? "outside the zoom"
+        const std::string computed = report::outside_zoom(scene, result, observed.chainage) ? "outside the zoom"
                                      : std::isnan(front.arrival_time)
                                          ? "not reached"
                                          : fmt::format("{}, debris there {}", speed_text(front.front_velocity),
@@ -138,11 +138,11 @@ std::string summary_text(const scene::Scene& scene, const run::RunResult& result
                                             "{:.1f} degrees{}",
                                             r.at_least ? "at least " : "", r.along_flow, r.straight, r.drop,
                                             r.runout_angle * degrees_per_radian,
-                                            r.at_least ? fmt::format("; debris left the {}", result.extent()) : ""));
+                                            r.at_least ? fmt::format("; debris left the {}", result.domain()) : ""));
     }
     text += line("volume", fmt::format("{:.1f} m3 released: {:.1f} deposited, {:.1f} moving, {:.1f} left the {}",
                                        seen.volume_released, end.volume_deposited, end.volume_moving + end.volume_held,
-                                       end.volume_left, result.extent()));
+                                       end.volume_left, result.domain()));
     if (!scene.bed.empty()) {
         text += line("entrained", fmt::format("{:.1f} m3 from the bed", seen.erosion.volume));
     }

@@ -137,7 +137,7 @@ void draw_observations(Svg& svg, const scene::Scene& scene, const MapFrame& fram
     }
 }
 
-/// Where an observation stands at the same place, its label names both.
+/// An observation at the same place has a label there already.
 void draw_gauges(Svg& svg, const scene::Scene& scene, const MapFrame& frame, std::vector<Label>& labels) {
     for (const terrain::Gauge& gauge : scene.gauges) {
         if (!frame.area.contains(gauge.at)) continue;

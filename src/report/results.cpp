@@ -149,7 +149,7 @@ Json key_figures(const scene::Scene& scene, const run::RunResult& result) {
         o.run_out.along_flow, "f0", ran ? "m" : "",
         ran ? fmt::format("{}\u00a0m in a straight line, drop {}\u00a0m{}{}", fixed(o.run_out.straight, 0),
                           fixed(o.run_out.drop, 1), front,
-                          o.run_out.at_least ? fmt::format("; debris left the {}", result.extent()) : "")
+                          o.run_out.at_least ? fmt::format("; debris left the {}", result.domain()) : "")
             : "no debris ran out");
     add("runout_angle_deg", "Runout angle", o.run_out.runout_angle * degrees_per_radian, "f1", ran ? "°" : "",
         ran ? fmt::format("travel angle of the centre of mass\u00a0{}°",
@@ -300,10 +300,7 @@ Json observations(const scene::Scene& scene, const run::RunResult& result) {
     for (const params::ObservationSpec& observed : scene.spec.observations) {
         const observe::FrontSample computed = front_at(result.observation, observed.chainage);
         Json velocity = number_or_null<Json>(computed.front_velocity);
-        if (velocity.is_null() && !scene.flow_path.empty() &&
-            !result.covers(scene.flow_path.point_at(observed.chainage))) {
-            velocity = "outside the zoom";
-        }
+        if (velocity.is_null() && outside_zoom(scene, result, observed.chainage)) velocity = "outside the zoom";
         rows["rows"].push_back({{"observation", observed.name},
                                 {"chainage_m", observed.chainage},
                                 {"observed_mps", observed.front_velocity},

@@ -59,6 +59,8 @@ struct NamedRun {
 [[nodiscard]] Json gauges(const std::vector<NamedRun>& runs);
 /// What was zoomed, and the balance of volume and momentum across its boundary.
 [[nodiscard]] Json zoom(const run::RunResult& result);
+/// Whether a chainage of the flow path lies outside a zoom. Without a path there is no such place.
+[[nodiscard]] bool outside_zoom(const scene::Scene& scene, const run::RunResult& result, double chainage);
 /// Which laws the scene uses.
 [[nodiscard]] Json method(const scene::Scene& scene);
 [[nodiscard]] Json chosen_values(const scene::Scene& scene, const run::RunResult& result);

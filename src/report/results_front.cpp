@@ -254,7 +254,7 @@ Json time_chart(const run::RunResult& result) {
     volume.band(t, zero, deposited, "area deposited", "deposited");
     volume.band(t, deposited, moving, "area moving", "moving");
     volume.band(t, moving, held, "area held", "held");
-    volume.band(t, held, left, "area left", fmt::format("left the {}", result.extent()));
+    volume.band(t, held, left, "area left", fmt::format("left the {}", result.domain()));
 
     Plot fastest(first, below, width, height, time, speeds);
     fastest.axes("time, s", "speed, m/s");

@@ -57,6 +57,10 @@ Json discharge_chart(const run::ZoomRecord& zoom) {
 
 }  // namespace
 
+bool outside_zoom(const scene::Scene& scene, const run::RunResult& result, double chainage) {
+    return result.zoom && !scene.flow_path.empty() && !result.covers(scene.flow_path.point_at(chainage));
+}
+
 Json zoom(const run::RunResult& result) {
     if (!result.zoom) return {};
     const run::ZoomRecord& zoom = *result.zoom;

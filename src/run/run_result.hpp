@@ -46,8 +46,8 @@ struct RunResult {
 
     /// Whether a place lies in what was computed.
     [[nodiscard]] bool covers(const PlanPoint& at) const { return !zoom || contains(zoom->area, at); }
-    /// What debris is no longer followed beyond.
-    [[nodiscard]] const char* extent() const { return zoom ? "zoom" : "terrain"; }
+    /// That, in a word.
+    [[nodiscard]] const char* domain() const { return zoom ? "zoom" : "terrain"; }
     [[nodiscard]] bool depth_averaged() const { return grid_cell > 0; }
     [[nodiscard]] double real_time_factor() const { return wall_time > 0 ? simulated_time / wall_time : 0; }
 };

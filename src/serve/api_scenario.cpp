@@ -110,24 +110,20 @@ void layer(Session& session, const Request& request, const Respond& respond) {
          });
 }
 
-void impacts(Session& session, const Request& request, const Respond& respond) {
-    const auto time = number_of(request, "time_s", 0, 1e9);
-    if (!time) {
-        respond(error_response(400, time.error().message));
-        return;
-    }
-    ask(session, request, respond,
-        [time = *time](Scenarios& all, int index) { return json_response(200, all.at(index).impacts_json(time)); });
-}
+/// A table of a scenario, now or as of `time_s`.
+using Table = json (twin::Scenario::*)(std::optional<double> time) const;
 
-void gauges(Session& session, const Request& request, const Respond& respond) {
-    const auto time = number_of(request, "time_s", 0, 1e9);
-    if (!time) {
-        respond(error_response(400, time.error().message));
-        return;
-    }
-    ask(session, request, respond,
-        [time = *time](Scenarios& all, int index) { return json_response(200, all.at(index).gauges_json(time)); });
+Handler table_handler(Session& session, Table table) {
+    return [&session, table](const Request& request, const Respond& respond) {
+        const auto time = number_of(request, "time_s", 0, 1e9);
+        if (!time) {
+            respond(error_response(400, time.error().message));
+            return;
+        }
+        ask(session, request, respond, [table, time = *time](Scenarios& all, int index) {
+            return json_response(200, (all.at(index).*table)(time));
+        });
+    };
 }
 
 void action(Session& session, const Request& request, const Respond& respond) {
@@ -162,8 +158,16 @@ void add_scenario_routes(Router& router, Session& session, Exports& exports) {
             [&session, handler](const Request& request, const Respond& respond) { handler(session, request, respond); };
     };
     router.add({"GET", "/api/scenarios/{s}/frame", Role::viewer, with_session(frame), {"time_s"}});
-    router.add({"GET", "/api/scenarios/{s}/impacts", Role::viewer, with_session(impacts), {"time_s"}});
-    router.add({"GET", "/api/scenarios/{s}/gauges", Role::viewer, with_session(gauges), {"time_s"}});
+    router.add({"GET",
+                "/api/scenarios/{s}/impacts",
+                Role::viewer,
+                table_handler(session, &twin::Scenario::impacts_json),
+                {"time_s"}});
+    router.add({"GET",
+                "/api/scenarios/{s}/gauges",
+                Role::viewer,
+                table_handler(session, &twin::Scenario::gauges_json),
+                {"time_s"}});
     router.add({"GET", "/api/scenarios/{s}/probe", Role::viewer, with_session(probe), {"x_m", "y_m"}});
     router.add({"GET", "/api/scenarios/{s}/figures", Role::viewer, with_session(figures)});
     router.add({"GET", "/api/scenarios/{s}/layers/{name}", Role::viewer, with_session(layer), {"time_s"}});

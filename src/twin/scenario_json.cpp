@@ -208,7 +208,6 @@ json Scenario::scene_json() const {
 
 json Scenario::state_json(bool with_hash) const {
     const LiveRun& run = *parts_->run;
-    const auto or_null = [](const std::optional<double>& value) { return value ? json(*value) : json(); };
     const sim::State& state = run.state();
     const observe::TimeSample now = run.observer().sample(run.model(), state);
     const std::vector<observe::FrontSample> front = run.observer().front();
@@ -220,8 +219,8 @@ json Scenario::state_json(bool with_hash) const {
                    {"message", message()},
                    {"time_s", state.time},
                    {"end_time_s", scene().spec.solver.end_time},
-                   {"expected_end_s", or_null(run.expected_end())},
-                   {"wall_remaining_s", or_null(run.wall_remaining())},
+                   {"expected_end_s", number_or_null<json>(run.expected_end().value_or(observe::never))},
+                   {"wall_remaining_s", number_or_null<json>(run.wall_remaining().value_or(observe::never))},
                    {"step", state.step},
                    {"particles", state.count},
                    {"volume_released_m3", now.volume_released},

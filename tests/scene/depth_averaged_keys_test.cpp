@@ -94,9 +94,11 @@ TEST_F(DepthAveragedScene, refuses_what_the_model_lacks) {
         if (entry.use != KeyUse::refused) continue;
         ASSERT_TRUE(scenes.contains(std::string(entry.key))) << entry.key << " has no scene here";
         write_valley(scenes.at(std::string(entry.key)));
+        // Releases and barriers are lists.
+        std::string key(entry.key);
+        if (!key.starts_with("buildings.")) key.insert(key.find('.'), "[0]");
         EXPECT_THAT(load_error({"solver.model=depth_averaged"}),
-                    testing::AllOf(testing::ContainsRegex(":[0-9]+: (release|barrier)?\\[?0?\\]?.*" +
-                                                          std::string(entry.key.substr(entry.key.find('.')))),
+                    testing::AllOf(testing::ContainsRegex(":[0-9]+: "), HasSubstr(key),
                                    HasSubstr("the depth-averaged model " + std::string(entry.why)),
                                    HasSubstr("remove it, or use solver.model = \"particles\"")))
             << entry.key;

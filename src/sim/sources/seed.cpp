@@ -230,7 +230,7 @@ Result<State> seed_releases(Model& model, const Ground& ground, const std::vecto
             if (own) state.held[i] = release.start_time > 0;
         }
     }
-    state.max_speed = 0;
+    state.max_speed = 0;  // was that of the search for the pressures
     return state;
 }
 

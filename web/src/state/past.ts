@@ -17,8 +17,12 @@ export function seriesUntil(series: Series | null, time_s: number | null): Serie
   const { chainage_m, front_velocity_mps, particle_speed_mps } = series.front;
   const { gauges } = series;
   const passed = kept(gauges.time_s);
-  return { time, gauges: { time_s: gauges.time_s.slice(0, passed), depth_m: gauges.depth_m.map((column) => column.slice(0, passed)) }, front: { chainage_m: there(chainage_m), arrival_time_s: there(arrival_time_s), front_velocity_mps: there(front_velocity_mps),
-    particle_speed_mps: there(particle_speed_mps) } };
+  return {
+    time,
+    gauges: { time_s: gauges.time_s.slice(0, passed), depth_m: gauges.depth_m.map((column) => column.slice(0, passed)) },
+    front: { chainage_m: there(chainage_m), arrival_time_s: there(arrival_time_s), front_velocity_mps: there(front_velocity_mps),
+      particle_speed_mps: there(particle_speed_mps) },
+  };
 }
 
 /** The front counts as moving for this time after reaching a new chainage, as in the server. */
