@@ -22,6 +22,8 @@ class Serve : public ::testing::Test {
 
     /// Does not end by itself; simulated time passes as wall time does.
     void SetUp() override { start(); }
+    /// Before what derived fixtures lend it is gone.
+    void TearDown() override { server_.reset(); }
 
     void start(const std::vector<std::string>& overrides = {}, Milliseconds patience = Milliseconds(60000)) {
         server_.reset();
