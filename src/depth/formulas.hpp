@@ -129,6 +129,7 @@ struct FaceSide {
     Real depth, normal, across;
     Real wave;   ///< square of the wave speed over the depth, m/s2
     Real limit;  ///< the largest mass flux that the cell can feed without running dry, m2/s
+    Real square, lift;  ///< of the velocity along the ground, m2/s2; pressure over depth, m/s2
 };
 
 template <class Real>
@@ -137,6 +138,7 @@ struct Flux {
     Real normal, across;                   ///< advected momentum, m3/s2
     Real pressure_before, pressure_after;  ///< at the face, above depth^2 / 2 of that side, m2
     Real carried_normal, carried_across;   ///< velocity of the debris that passes
+    Real energy;                           ///< above the bed of the face, with the work of pressure, m4/s3
 };
 
 /// HLL (Harten, Lax & van Leer 1983) with the wave speeds of Davis (1988), beside dry ground those of a dam break
@@ -161,6 +163,13 @@ TALUS_INLINE Flux<Real> face_flux(const FaceSide<Real>& before, const FaceSide<R
     const Real mass = wave_before * m_before + wave_after * m_after + both * (after.depth - before.depth);
     const Real advected =
         wave_before * (m_before * before.normal) + wave_after * (m_after * after.normal) + both * (m_after - m_before);
+    const auto kinetic = [](const FaceSide<Real>& s) __attribute__((always_inline)) { return Real(0.5F) * s.square; };
+    const auto pressure = [](const FaceSide<Real>& s) __attribute__((always_inline)) { return s.lift * s.depth; };
+    const Real energy_before = before.depth * (kinetic(before) + Real(0.5F) * pressure(before)),
+               energy_after = after.depth * (kinetic(after) + Real(0.5F) * pressure(after));
+    const Real energy = wave_before * (m_before * (kinetic(before) + pressure(before))) +
+                        wave_after * (m_after * (kinetic(after) + pressure(after))) +
+                        both * (energy_after - energy_before);
     const auto forward = mass > zero;
     const Real limit = select(forward, before.limit, after.limit), size = magnitude(mass);
     const Real share = select(size > limit, limit / (size + tiny), Real(1));
@@ -168,6 +177,7 @@ TALUS_INLINE Flux<Real> face_flux(const FaceSide<Real>& before, const FaceSide<R
     Flux<Real> f;
     f.mass = mass * share;
     f.normal = advected * share;
+    f.energy = energy * share;
     f.carried_normal = select(forward, before.normal, after.normal);
     f.carried_across = select(forward, before.across, after.across);
     f.across = f.mass * f.carried_across;

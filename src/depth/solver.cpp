@@ -33,7 +33,7 @@ Solver::Solver(const Grid<double>& bed, const Material& material, const GroundVa
     origin_ = 2 * stride_ + guard;
     const std::size_t size = (static_cast<std::size_t>(tile_rows_) * tile_edge + 4) * stride_ + 2 * guard;
     for (std::vector<float>* array :
-         {&bed_, &slope_x_, &slope_y_, &depth_, &u_, &v_, &next_depth_, &next_u_, &next_v_}) {
+         {&bed_, &slope_x_, &slope_y_, &depth_, &u_, &v_, &next_depth_, &next_u_, &next_v_, &spare_, &next_spare_}) {
         array->assign(size, 0.0F);
     }
     unknown_.assign(size, 1);
@@ -64,6 +64,7 @@ void Solver::inject(int column, int row, double depth, double u, double v) {
     };
     u_[i] = next_u_[i] = mixed(u_[i], u);
     v_[i] = next_v_[i] = mixed(v_[i], v);
+    spare_[i] = next_spare_[i] = mixed(spare_[i], 0);
     depth_[i] = next_depth_[i] = static_cast<float>(all);
     expect_waves_of(i, tile_of(column, row));
 }
@@ -139,7 +140,7 @@ double Solver::take_outflow(const Segment& segment, const Motion& motion) {
                                       static_cast<std::size_t>(tile * tile_edge + column);
                 if (!unknown_[origin_ + i]) continue;
                 if (counts) sum += motion.depth[i];
-                motion.depth[i] = motion.u[i] = motion.v[i] = 0;
+                motion.depth[i] = motion.u[i] = motion.v[i] = motion.spare[i] = 0;
             }
         }
     }
@@ -151,8 +152,8 @@ double Solver::advance_stage(bool second) {
     StageData data;
     data.stride = static_cast<int>(stride_);
     data.bed = pointer(bed_);
-    data.from = {pointer(depth_), pointer(u_), pointer(v_)};
-    data.to = {pointer(next_depth_), pointer(next_u_), pointer(next_v_)};
+    data.from = {pointer(depth_), pointer(u_), pointer(v_), pointer(spare_)};
+    data.to = {pointer(next_depth_), pointer(next_u_), pointer(next_v_), pointer(next_spare_)};
     if (second) std::swap(data.from, data.to);
     data.second = second;
     data.time_step = static_cast<float>(time_step_);
@@ -198,8 +199,9 @@ double Solver::next_step(double longest) const {
 Status Solver::advance(double longest) {
     find_active_tiles();
     if (edges_ == Edges::continued) {  // what was added since, too
-        continue_rows({depth_.data() + origin_, u_.data() + origin_, v_.data() + origin_});
-        continue_rows({next_depth_.data() + origin_, next_u_.data() + origin_, next_v_.data() + origin_});
+        continue_rows({depth_.data() + origin_, u_.data() + origin_, v_.data() + origin_, spare_.data() + origin_});
+        continue_rows({next_depth_.data() + origin_, next_u_.data() + origin_, next_v_.data() + origin_,
+                       next_spare_.data() + origin_});
     }
     time_step_ = next_step(longest);
     if (!segments_.empty()) {
@@ -235,7 +237,7 @@ double Solver::volume() const {
 double Solver::bytes_per_cell() const {
     std::size_t bytes = unknown_.size();
     for (const std::vector<float>* array :
-         {&bed_, &slope_x_, &slope_y_, &depth_, &u_, &v_, &next_depth_, &next_u_, &next_v_, &friction_,
+         {&bed_, &slope_x_, &slope_y_, &depth_, &u_, &v_, &next_depth_, &next_u_, &next_v_, &spare_, &next_spare_, &friction_,
           &inverse_turbulence_, &strength_, &stem_drag_, &structure_, &inflow_.depth, &inflow_.momentum_x,
           &inflow_.momentum_y, &inflow_.from_x, &inflow_.from_y}) {
         bytes += array->size() * sizeof(float);

@@ -168,7 +168,7 @@ class Solver {
     int tile_columns_ = 0, tile_rows_ = 0;
     std::size_t stride_ = 0, origin_ = 0;  ///< origin_: index of the padded grid's south-western cell
     std::vector<float> bed_, slope_x_, slope_y_;
-    std::vector<float> depth_, u_, v_, next_depth_, next_u_, next_v_;
+    std::vector<float> depth_, u_, v_, next_depth_, next_u_, next_v_, spare_, next_spare_;
     std::vector<float> friction_, inverse_turbulence_, strength_, stem_drag_,
         structure_;  ///< empty: everywhere the same
     struct {

@@ -17,6 +17,8 @@ struct Segment {
 /// Pointers to the south-western cell of padded rasters, row by row.
 struct Motion {
     float *depth, *u, *v;
+    /// Energy over mass, m2/s2, that debris has been given by the ground and its pressure and does not move with.
+    float* spare;
 };
 /// Per cell; null: everywhere the same.
 struct Cover {

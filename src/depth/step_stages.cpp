@@ -41,10 +41,12 @@ struct AxisRow {
 struct Row {
     AxisRow x, y;
     Numbers at_rest, bed_x, bed_y;
+    Numbers lift;   ///< pressure over density and depth, m/s2
+    Numbers spare;  ///< see Motion
 };
 /// Fluxes of a row of faces, and what the ground's curvature presses at them.
 struct Faces {
-    Numbers mass, normal, across, pressure_before, pressure_after, press;
+    Numbers mass, normal, across, pressure_before, pressure_after, press, energy;
 };
 struct Scratch {
     std::array<Row, 2> rows;  ///< of the row and the one before it
@@ -167,6 +169,8 @@ HWY_INLINE void reconstruct(const StageData& data, std::ptrdiff_t i, int cells, 
         store(larger(opaque(select(dry, one, zero)), still * held), row.at_rest, j);
         store(bed_x, row.bed_x, j);
         store(bed_y, row.bed_y, j);
+        store(gravity * flatness, row.lift, j);
+        store(at(data.from.spare, 0), row.spare, j);
         store(select(dry, zero, sqrt(own_u * own_u + own_v * own_v) + twice_wave), speed, j);
     }
 }
@@ -174,10 +178,17 @@ HWY_INLINE void reconstruct(const StageData& data, std::ptrdiff_t i, int cells, 
 /// Fluxes between entry j of `before` and entry k of `after`; the normal velocity of the axis is u, if `along_x`.
 HWY_INLINE void cross_faces(const Row& before, int j, const Row& after, int k, bool along_x, Faces& faces, int to) {
     const AxisRow &b = along_x ? before.x : before.y, &a = along_x ? after.x : after.y;
-    FaceSide<L> from{load(b.depth_after, j), load(b.normal_after, j), load(b.across_after, j), load(b.wave, j),
-                     load(b.limit_after, j)};
-    FaceSide<L> onto{load(a.depth_before, k), load(a.normal_before, k), load(a.across_before, k), load(a.wave, k),
-                     load(a.limit_before, k)};
+    const L lift = (load(before.lift, j) + load(after.lift, k)) * L(0.5F);
+    const auto side = [&](const Numbers& depth, const Numbers& normal, const Numbers& across, const Numbers& wave,
+                          const Numbers& limit, const Row& row, int at) HWY_ATTR {
+        FaceSide<L> s{load(depth, at), load(normal, at), load(across, at), load(wave, at), load(limit, at), {}, lift};
+        const L up = load(row.bed_x, at) * (along_x ? s.normal : s.across) +
+                     load(row.bed_y, at) * (along_x ? s.across : s.normal);
+        s.square = s.normal * s.normal + s.across * s.across + up * up;
+        return s;
+    };
+    FaceSide<L> from = side(b.depth_after, b.normal_after, b.across_after, b.wave, b.limit_after, before, j);
+    FaceSide<L> onto = side(a.depth_before, a.normal_before, a.across_before, a.wave, a.limit_before, after, k);
     // Beside dry ground that stands above it, debris sees itself; beside a structure, its mirror image.
     const auto mirror = [](const L& wall, const FaceSide<L>& of, FaceSide<L>& in) HWY_ATTR {
         in.depth = select(wall > L(0), of.depth, in.depth);
@@ -185,6 +196,7 @@ HWY_INLINE void cross_faces(const Row& before, int j, const Row& after, int k, b
         in.normal = select(wall > L(1), L(0) - of.normal, in.normal);
         in.across = select(wall > L(0), of.across, in.across);
         in.wave = select(wall > L(0), of.wave, in.wave);
+        in.square = select(wall > L(0), of.square, in.square);
     };
     // Not both: of two neighbours, a wall is the dry one.
     // Debris on top of a structure falls off, over the debris beside it.
@@ -214,6 +226,8 @@ HWY_INLINE void cross_faces(const Row& before, int j, const Row& after, int k, b
     store(flux.pressure_after * open * (L(1) - falls_after), faces.pressure_after, to);
     store(flux.mass * passes, faces.mass, to);
     store(L(0.5F) * flux.mass * turn * passes, faces.press, to);
+    const L spare = select(flux.mass > L(0), load(before.spare, j), load(after.spare, k));
+    store((flux.energy + flux.mass * spare) * passes, faces.energy, to);
 }
 
 /// Updates lane_count cells at index i, entry j of the row.
@@ -226,6 +240,10 @@ HWY_INLINE void update(const StageData& data, Scratch& scratch, int r, std::ptrd
     const L depth = L::load(data.from.depth + i), u = L::load(data.from.u + i), v = L::load(data.from.v + i);
     const L bed_x = load(row.bed_x, j), bed_y = load(row.bed_y, j);
     const L square_stretch = one + bed_x * bed_x + bed_y * bed_y, stretch = sqrt(square_stretch);
+    const auto square = [&](const L& a, const L& b) HWY_ATTR {
+        const L c = bed_x * a + bed_y * b;
+        return a * a + b * b + c * c;
+    };
 
     const auto force = [&](const AxisRow& axis, const L& after, const L& before) HWY_ATTR {
         return (before - after - (load(axis.depth_before, j) + load(axis.depth_after, j)) * half * load(axis.rise, j)) *
@@ -239,7 +257,7 @@ HWY_INLINE void update(const StageData& data, Scratch& scratch, int r, std::ptrd
     const L pull = free * gravity / (one + tilt);
     const L press =
         (load(x.press, j - 1) + load(x.press, j) + load(south.press, j) + load(north.press, j)) * inverse_cell;
-    const L curvature = free * larger(press, zero - gravity * depth) / square_stretch;
+    const L curvature = free * press / square_stretch;
 
     L new_depth = larger(
         zero, depth - per_cell * (load(x.mass, j) - load(x.mass, j - 1) + (load(north.mass, j) - load(south.mass, j))));
@@ -248,6 +266,15 @@ HWY_INLINE void update(const StageData& data, Scratch& scratch, int r, std::ptrd
     L m_x = depth * u - per_cell * out_x + dt * (pull * force_x - curvature * bed_x);
     L m_y = depth * v - per_cell * out_y + dt * (pull * force_y - curvature * bed_y);
     L bound = zero;
+    // Energy over density and area, above the bed and without what depth alone has: of motion, spare, less what goes.
+    const L lift = load(row.lift, j), head = lift * depth, bed = L::load(data.bed + i), square_speed = square(u, v);
+    const std::ptrdiff_t up = data.stride;
+    const auto out = [&](const Faces& faces, int at, std::ptrdiff_t beside) HWY_ATTR {
+        return load(faces.energy, at) +
+               load(faces.mass, at) * (half * gravity * (L::load(data.bed + (i + beside)) - bed) - head);
+    };
+    L energy = depth * (half * square_speed + load(row.spare, j)) -
+               per_cell * (out(x, j, 1) - out(x, j - 1, -1) + (out(north, j, up) - out(south, j, -up)));
     if (data.inflow.depth != nullptr) {
         const L comes = L::load(data.inflow.depth + i);
         const L comes_x = L::load(data.inflow.momentum_x + i), comes_y = L::load(data.inflow.momentum_y + i);
@@ -255,12 +282,15 @@ HWY_INLINE void update(const StageData& data, Scratch& scratch, int r, std::ptrd
         m_x = m_x + dt * comes_x;
         m_y = m_y + dt * comes_y;
         bound = sqrt(comes_x * comes_x + comes_y * comes_y) / larger(comes, L(1e-12F));
+        energy = energy + dt * (half * square(comes_x, comes_y) / larger(comes, L(1e-12F)) +
+                                comes * lift * (new_depth - depth));
     }
 
     const L m_up = bed_x * m_x + bed_y * m_y, momentum = sqrt(m_x * m_x + m_y * m_y + m_up * m_up);
     const L normal_force = larger(zero, gravity * depth / (one + tilt) + curvature);
     const L left =
         resisted(resistance_at(data, i, new_depth, stretch), gravity, momentum, new_depth, normal_force, stretch, dt);
+    energy = energy - (momentum - left) * sqrt(square_speed);
     const L moves = smaller(new_depth - L(dry_depth), left);
     const L to_speed =
         select(moves > zero, left / (larger(momentum, L(1e-30F)) * larger(new_depth, L(dry_depth))), zero);
@@ -278,6 +308,8 @@ HWY_INLINE void update(const StageData& data, Scratch& scratch, int r, std::ptrd
     new_v = new_v * slower;
 
     L to_depth = new_depth;
+    const L deeper = new_depth - depth;
+    L spare = energy - half * (lift * deeper * deeper + new_depth * square(new_u, new_v));
     const auto difference = [](const L& a, const L& b) HWY_ATTR { return magnitude(a - b); };
     L change = load(scratch.change, j) + difference(new_depth, depth) + difference(new_u, u) + difference(new_v, v);
     if (data.second) {
@@ -288,12 +320,23 @@ HWY_INLINE void update(const StageData& data, Scratch& scratch, int r, std::ptrd
             select(smaller(moves, to_depth - L(dry_depth)) > zero, half / larger(to_depth, L(dry_depth)), zero);
         new_u = (old_depth * old_u + new_depth * new_u) * scale;
         new_v = (old_depth * old_v + new_depth * new_v) * scale;
+        // No faster than its energy allows.
+        const L old_spare = L::load(data.to.spare + i), sum_deeper = new_depth - old_depth;
+        const L allowed = old_depth * (half * square(old_u, old_v) + old_spare) + energy +
+                          lift * (L(0.25F) * sum_deeper * sum_deeper - half * deeper * deeper);
+        const L needed = to_depth * square(new_u, new_v);
+        const L share = select(needed > allowed, sqrt(larger(zero, allowed) / larger(needed, L(1e-30F))), one);
+        new_u = new_u * share;
+        new_v = new_v * share;
+        spare = half * smaller(larger(zero, allowed - needed), L(0.5F) * needed);
         change = change + difference(to_depth, old_depth) + difference(new_u, old_u) + difference(new_v, old_v);
         const L signal = select(to_depth <= L(dry_depth), zero,
                                 magnitude(new_u) + magnitude(new_v) + L(2) * sqrt(gravity * to_depth));
         fastest.largest = larger(fastest.largest, signal);
         fastest.unknown = fastest.unknown + signal * zero;
     }
+    spare = select(to_depth <= L(dry_depth), zero, spare / larger(to_depth, L(dry_depth)));
+    spare.store(data.to.spare + i);
     store(change, scratch.change, j);
     to_depth.store(data.to.depth + i);
     new_u.store(data.to.u + i);
