@@ -127,9 +127,10 @@ TALUS_INLINE Sides<Real> sides_of(const Line<Real>& l) {
 template <class Real>
 struct FaceSide {
     Real depth, normal, across;
-    Real wave;   ///< square of the wave speed over the depth, m/s2
-    Real limit;  ///< the largest mass flux that the cell can feed without running dry, m2/s
-    Real square, lift;  ///< of the velocity along the ground, m2/s2; pressure over depth, m/s2
+    Real wave;    ///< square of the wave speed over the depth, m/s2
+    Real limit;   ///< the largest mass flux that the cell can feed without running dry, m2/s
+    Real square;  ///< of the speed along the ground, m2/s2
+    Real lift;    ///< pressure on the ground over density and depth, m/s2
 };
 
 template <class Real>
@@ -138,7 +139,7 @@ struct Flux {
     Real normal, across;                   ///< advected momentum, m3/s2
     Real pressure_before, pressure_after;  ///< at the face, above depth^2 / 2 of that side, m2
     Real carried_normal, carried_across;   ///< velocity of the debris that passes
-    Real energy;                           ///< above the bed of the face, with the work of pressure, m4/s3
+    Real energy;                           ///< of motion and pressure, with the work of pressure, m4/s3
 };
 
 /// HLL (Harten, Lax & van Leer 1983) with the wave speeds of Davis (1988), beside dry ground those of a dam break
@@ -163,13 +164,11 @@ TALUS_INLINE Flux<Real> face_flux(const FaceSide<Real>& before, const FaceSide<R
     const Real mass = wave_before * m_before + wave_after * m_after + both * (after.depth - before.depth);
     const Real advected =
         wave_before * (m_before * before.normal) + wave_after * (m_after * after.normal) + both * (m_after - m_before);
-    const auto kinetic = [](const FaceSide<Real>& s) __attribute__((always_inline)) { return Real(0.5F) * s.square; };
-    const auto pressure = [](const FaceSide<Real>& s) __attribute__((always_inline)) { return s.lift * s.depth; };
-    const Real energy_before = before.depth * (kinetic(before) + Real(0.5F) * pressure(before)),
-               energy_after = after.depth * (kinetic(after) + Real(0.5F) * pressure(after));
-    const Real energy = wave_before * (m_before * (kinetic(before) + pressure(before))) +
-                        wave_after * (m_after * (kinetic(after) + pressure(after))) +
-                        both * (energy_after - energy_before);
+    const Real half(0.5F), head_before = before.lift * before.depth, head_after = after.lift * after.depth;
+    const Real energy =
+        wave_before * (m_before * (half * before.square + head_before)) +
+        wave_after * (m_after * (half * after.square + head_after)) +
+        both * half * (after.depth * (after.square + head_after) - before.depth * (before.square + head_before));
     const auto forward = mass > zero;
     const Real limit = select(forward, before.limit, after.limit), size = magnitude(mass);
     const Real share = select(size > limit, limit / (size + tiny), Real(1));

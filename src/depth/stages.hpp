@@ -17,7 +17,8 @@ struct Segment {
 /// Pointers to the south-western cell of padded rasters, row by row.
 struct Motion {
     float *depth, *u, *v;
-    /// Energy over mass, m2/s2, that debris has been given by the ground and its pressure and does not move with.
+    /// Energy over mass, m2/s2, that debris has been given by its fall and by pressure and does not move with: what the
+    /// scheme has taken, or below zero, has added. It goes with the mass.
     float* spare;
 };
 /// Per cell; null: everywhere the same.

@@ -16,6 +16,12 @@ HWY_BEFORE_NAMESPACE();
 namespace talus::depth::HWY_NAMESPACE {
 namespace {
 
+/// Share of its kinetic energy by which debris may exceed what it has been given: the model's pressure on steep ground
+/// and the scheme both miss by that much where nothing is wrong.
+constexpr float energy_error = 0.02F;
+/// Most that is kept spare, over kinetic energy and that of pressure: what a shock took does not come back.
+constexpr float largest_spare = 0.5F;
+
 constexpr int lane_count = HWY_MAX_BYTES >= 64 ? 16 : HWY_MAX_BYTES >= 32 ? 8 : 4;
 static_assert(tile_edge % lane_count == 0);
 using L = simd::Lanes<lane_count>;
@@ -41,10 +47,9 @@ struct AxisRow {
 struct Row {
     AxisRow x, y;
     Numbers at_rest, bed_x, bed_y;
-    Numbers lift;   ///< pressure over density and depth, m/s2
-    Numbers spare;  ///< see Motion
+    Numbers lift, spare;  ///< see FaceSide, Motion
 };
-/// Fluxes of a row of faces, and what the ground's curvature presses at them.
+/// Fluxes of a row of faces, that of energy with what is spare, and what the ground's curvature presses at them.
 struct Faces {
     Numbers mass, normal, across, pressure_before, pressure_after, press, energy;
 };
@@ -179,16 +184,27 @@ HWY_INLINE void reconstruct(const StageData& data, std::ptrdiff_t i, int cells, 
 HWY_INLINE void cross_faces(const Row& before, int j, const Row& after, int k, bool along_x, Faces& faces, int to) {
     const AxisRow &b = along_x ? before.x : before.y, &a = along_x ? after.x : after.y;
     const L lift = (load(before.lift, j) + load(after.lift, k)) * L(0.5F);
-    const auto side = [&](const Numbers& depth, const Numbers& normal, const Numbers& across, const Numbers& wave,
-                          const Numbers& limit, const Row& row, int at) HWY_ATTR {
-        FaceSide<L> s{load(depth, at), load(normal, at), load(across, at), load(wave, at), load(limit, at), {}, lift};
-        const L up = load(row.bed_x, at) * (along_x ? s.normal : s.across) +
-                     load(row.bed_y, at) * (along_x ? s.across : s.normal);
-        s.square = s.normal * s.normal + s.across * s.across + up * up;
-        return s;
+    const auto square = [&](const L& normal, const L& across, const Row& row, int at) HWY_ATTR {
+        const L by_x = along_x ? normal : across, by_y = along_x ? across : normal;
+        const L upward = load(row.bed_x, at) * by_x + load(row.bed_y, at) * by_y;
+        return normal * normal + across * across + upward * upward;
     };
-    FaceSide<L> from = side(b.depth_after, b.normal_after, b.across_after, b.wave, b.limit_after, before, j);
-    FaceSide<L> onto = side(a.depth_before, a.normal_before, a.across_before, a.wave, a.limit_before, after, k);
+    const L normal_before = load(b.normal_after, j), across_before = load(b.across_after, j);
+    const L normal_after = load(a.normal_before, k), across_after = load(a.across_before, k);
+    FaceSide<L> from{load(b.depth_after, j),
+                     normal_before,
+                     across_before,
+                     load(b.wave, j),
+                     load(b.limit_after, j),
+                     square(normal_before, across_before, before, j),
+                     lift};
+    FaceSide<L> onto{load(a.depth_before, k),
+                     normal_after,
+                     across_after,
+                     load(a.wave, k),
+                     load(a.limit_before, k),
+                     square(normal_after, across_after, after, k),
+                     lift};
     // Beside dry ground that stands above it, debris sees itself; beside a structure, its mirror image.
     const auto mirror = [](const L& wall, const FaceSide<L>& of, FaceSide<L>& in) HWY_ATTR {
         in.depth = select(wall > L(0), of.depth, in.depth);
@@ -240,9 +256,9 @@ HWY_INLINE void update(const StageData& data, Scratch& scratch, int r, std::ptrd
     const L depth = L::load(data.from.depth + i), u = L::load(data.from.u + i), v = L::load(data.from.v + i);
     const L bed_x = load(row.bed_x, j), bed_y = load(row.bed_y, j);
     const L square_stretch = one + bed_x * bed_x + bed_y * bed_y, stretch = sqrt(square_stretch);
-    const auto square = [&](const L& a, const L& b) HWY_ATTR {
-        const L c = bed_x * a + bed_y * b;
-        return a * a + b * b + c * c;
+    const auto square = [&](const L& by_x, const L& by_y) HWY_ATTR {
+        const L upward = bed_x * by_x + bed_y * by_y;
+        return by_x * by_x + by_y * by_y + upward * upward;
     };
 
     const auto force = [&](const AxisRow& axis, const L& after, const L& before) HWY_ATTR {
@@ -266,7 +282,9 @@ HWY_INLINE void update(const StageData& data, Scratch& scratch, int r, std::ptrd
     L m_x = depth * u - per_cell * out_x + dt * (pull * force_x - curvature * bed_x);
     L m_y = depth * v - per_cell * out_y + dt * (pull * force_y - curvature * bed_y);
     L bound = zero;
-    // Energy over density and area, above the bed and without what depth alone has: of motion, spare, less what goes.
+    // What debris may move with: its kinetic energy and what is spare, and what comes through the faces and falls there
+    // from the bed of one cell to that of the other, over density and area. What depth alone has (lift h^2 / 2) is left
+    // out, since single precision would lose the rest in it.
     const L lift = load(row.lift, j), head = lift * depth, bed = L::load(data.bed + i), square_speed = square(u, v);
     const std::ptrdiff_t up = data.stride;
     const auto out = [&](const Faces& faces, int at, std::ptrdiff_t beside) HWY_ATTR {
@@ -282,8 +300,10 @@ HWY_INLINE void update(const StageData& data, Scratch& scratch, int r, std::ptrd
         m_x = m_x + dt * comes_x;
         m_y = m_y + dt * comes_y;
         bound = sqrt(comes_x * comes_x + comes_y * comes_y) / larger(comes, L(1e-12F));
+        // It enters at the upper edge of the cell, with the pressure of its depth.
+        const L fall = half * gravity * (magnitude(bed_x) + magnitude(bed_y)) / inverse_cell;
         energy = energy + dt * (half * square(comes_x, comes_y) / larger(comes, L(1e-12F)) +
-                                comes * lift * (new_depth - depth));
+                                comes * (fall + lift * (new_depth - depth)));
     }
 
     const L m_up = bed_x * m_x + bed_y * m_y, momentum = sqrt(m_x * m_x + m_y * m_y + m_up * m_up);
@@ -320,15 +340,16 @@ HWY_INLINE void update(const StageData& data, Scratch& scratch, int r, std::ptrd
             select(smaller(moves, to_depth - L(dry_depth)) > zero, half / larger(to_depth, L(dry_depth)), zero);
         new_u = (old_depth * old_u + new_depth * new_u) * scale;
         new_v = (old_depth * old_v + new_depth * new_v) * scale;
-        // No faster than its energy allows.
-        const L old_spare = L::load(data.to.spare + i), sum_deeper = new_depth - old_depth;
+        // No faster than that allows. All terms are twice those of a stage, which count half.
+        const L old_spare = L::load(data.to.spare + i), rise = new_depth - old_depth;
         const L allowed = old_depth * (half * square(old_u, old_v) + old_spare) + energy +
-                          lift * (L(0.25F) * sum_deeper * sum_deeper - half * deeper * deeper);
-        const L needed = to_depth * square(new_u, new_v);
-        const L share = select(needed > allowed, sqrt(larger(zero, allowed) / larger(needed, L(1e-30F))), one);
+                          lift * (L(0.25F) * rise * rise - half * deeper * deeper);
+        const L wanted = to_depth * square(new_u, new_v), most = larger(zero, allowed) * L(1 / (1 - energy_error));
+        const L share = select(wanted > most, sqrt(most / larger(wanted, L(1e-30F))), one);
         new_u = new_u * share;
         new_v = new_v * share;
-        spare = half * smaller(larger(zero, allowed - needed), L(0.5F) * needed);
+        const L taken = smaller(wanted, most);
+        spare = half * smaller(allowed - taken, L(largest_spare) * (taken + lift * to_depth * to_depth));
         change = change + difference(to_depth, old_depth) + difference(new_u, old_u) + difference(new_v, old_v);
         const L signal = select(to_depth <= L(dry_depth), zero,
                                 magnitude(new_u) + magnitude(new_v) + L(2) * sqrt(gravity * to_depth));
