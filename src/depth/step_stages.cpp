@@ -47,7 +47,7 @@ struct AxisRow {
 struct Row {
     AxisRow x, y;
     Numbers at_rest, bed_x, bed_y;
-    Numbers lift, spare;  ///< see FaceSide, Motion
+    Numbers bed, square, lift, spare;  ///< the last three: see FaceSide, Motion
 };
 /// Fluxes of a row of faces, that of energy with what is spare, and what the ground's curvature presses at them.
 struct Faces {
@@ -174,6 +174,9 @@ HWY_INLINE void reconstruct(const StageData& data, std::ptrdiff_t i, int cells, 
         store(larger(opaque(select(dry, one, zero)), still * held), row.at_rest, j);
         store(bed_x, row.bed_x, j);
         store(bed_y, row.bed_y, j);
+        const L upward = bed_x * own_u + bed_y * own_v;
+        store(bed, row.bed, j);
+        store(own_u * own_u + own_v * own_v + upward * upward, row.square, j);
         store(gravity * flatness, row.lift, j);
         store(at(data.from.spare, 0), row.spare, j);
         store(select(dry, zero, sqrt(own_u * own_u + own_v * own_v) + twice_wave), speed, j);
@@ -181,13 +184,20 @@ HWY_INLINE void reconstruct(const StageData& data, std::ptrdiff_t i, int cells, 
 }
 
 /// Fluxes between entry j of `before` and entry k of `after`; the normal velocity of the axis is u, if `along_x`.
-HWY_INLINE void cross_faces(const Row& before, int j, const Row& after, int k, bool along_x, Faces& faces, int to) {
+HWY_INLINE void cross_faces(float gravity, const Row& before, int j, const Row& after, int k, bool along_x,
+                            Faces& faces, int to) {
     const AxisRow &b = along_x ? before.x : before.y, &a = along_x ? after.x : after.y;
     const L lift = (load(before.lift, j) + load(after.lift, k)) * L(0.5F);
-    const auto square = [&](const L& normal, const L& across, const Row& row, int at) HWY_ATTR {
+    // Where the ground bends, the velocity at the face belongs to neither slope: the energy line there lies between
+    // those of the cells.
+    const L fall = L(gravity) * (load(before.bed, j) - load(after.bed, k));
+    const L line_before = load(before.square, j) + fall, line_after = load(after.square, k) - fall;
+    const L line = (line_before + line_after) * L(0.5F);
+    const auto square = [&](const L& normal, const L& across, const Row& row, int at, const L& own_line) HWY_ATTR {
         const L by_x = along_x ? normal : across, by_y = along_x ? across : normal;
         const L upward = load(row.bed_x, at) * by_x + load(row.bed_y, at) * by_y;
-        return normal * normal + across * across + upward * upward;
+        return smaller(larger(normal * normal + across * across + upward * upward, smaller(own_line, line)),
+                       larger(own_line, line));
     };
     const L normal_before = load(b.normal_after, j), across_before = load(b.across_after, j);
     const L normal_after = load(a.normal_before, k), across_after = load(a.across_before, k);
@@ -196,14 +206,14 @@ HWY_INLINE void cross_faces(const Row& before, int j, const Row& after, int k, b
                      across_before,
                      load(b.wave, j),
                      load(b.limit_after, j),
-                     square(normal_before, across_before, before, j),
+                     square(normal_before, across_before, before, j, line_before),
                      lift};
     FaceSide<L> onto{load(a.depth_before, k),
                      normal_after,
                      across_after,
                      load(a.wave, k),
                      load(a.limit_before, k),
-                     square(normal_after, across_after, after, k),
+                     square(normal_after, across_after, after, k, line_after),
                      lift};
     // Beside dry ground that stands above it, debris sees itself; beside a structure, its mirror image.
     const auto mirror = [](const L& wall, const FaceSide<L>& of, FaceSide<L>& in) HWY_ATTR {
@@ -375,13 +385,15 @@ HWY_INLINE void update(const StageData& data, Scratch& scratch, int r, std::ptrd
     for (int r = 0; r < tile_edge + 2; ++r) {
         if (r >= 2) {
             const Row& row = row_of(r - 1);
-            for (int j = 0; j <= width; j += lane_count) cross_faces(row, j, row, j + 1, true, scratch.x, j);
+            for (int j = 0; j <= width; j += lane_count)
+                cross_faces(data.gravity, row, j, row, j + 1, true, scratch.x, j);
         }
         reconstruct(data, first + (r - 1) * static_cast<std::ptrdiff_t>(data.stride) - 1, width + 2, row_of(r),
                     scratch.speed[static_cast<std::size_t>(r % 3)]);
         if (r == 0) continue;
         Faces& faces = scratch.y[static_cast<std::size_t>(r & 1)];
-        for (int j = 1; j <= width; j += lane_count) cross_faces(row_of(r - 1), j, row_of(r), j, false, faces, j);
+        for (int j = 1; j <= width; j += lane_count)
+            cross_faces(data.gravity, row_of(r - 1), j, row_of(r), j, false, faces, j);
         if (r < 2) continue;
         for (int j = 1; j <= width; j += lane_count) {
             const std::ptrdiff_t i = first + (r - 2) * static_cast<std::ptrdiff_t>(data.stride) + (j - 1);
