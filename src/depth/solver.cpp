@@ -66,6 +66,7 @@ void Solver::inject(int column, int row, double depth, double u, double v) {
     v_[i] = next_v_[i] = mixed(v_[i], v);
     spare_[i] = next_spare_[i] = mixed(spare_[i], 0);
     depth_[i] = next_depth_[i] = static_cast<float>(all);
+    raise_line(i, all, u, v);
     expect_waves_of(i, tile_of(column, row));
 }
 
@@ -75,6 +76,9 @@ void Solver::add_inflow(int column, int row, const CellInflow& comes) {
     }
     const std::size_t i = index(column, row);
     inflow_.depth[i] += static_cast<float>(comes.rate);
+    // It enters at the upper edge of the cell.
+    const double edge = (std::abs(slope_x_[i]) + std::abs(slope_y_[i])) * geometry_.cell / 2;
+    raise_line(i, edge + depth_[i] + comes.rate * time_step_, comes.u, comes.v);
     inflow_.momentum_x[i] += static_cast<float>(comes.rate * comes.u);
     inflow_.momentum_y[i] += static_cast<float>(comes.rate * comes.v);
     inflow_.from_x[i] = static_cast<float>(comes.from_x);
@@ -93,6 +97,7 @@ void Solver::set_velocity(int column, int row, double u, double v) {
     if (!(depth_[i] > dry_depth)) return;
     u_[i] = next_u_[i] = static_cast<float>(u);
     v_[i] = next_v_[i] = static_cast<float>(v);
+    raise_line(i, depth_[i], u, v);
     expect_waves_of(i, tile_of(column, row));
 }
 
@@ -100,6 +105,13 @@ void Solver::expect_waves_of(std::size_t cell, std::size_t tile) {
     changed_[tile] = 1;
     const double wave = 2 * std::sqrt(material_.gravity * static_cast<double>(depth_[cell]));
     signal_ = std::max(signal_, static_cast<double>(std::abs(u_[cell]) + std::abs(v_[cell])) + wave);
+}
+
+/// Pressure gives the front of a dam break twice the head of its depth (Ritter 1892).
+void Solver::raise_line(std::size_t cell, double depth, double u, double v) {
+    const double w = u * slope_x_[cell] + v * slope_y_[cell];
+    const double head = (u * u + v * v + w * w) / (2 * material_.gravity);
+    highest_line_ = std::max(highest_line_, bed_[cell] + 2 * depth + head);
 }
 
 void Solver::find_active_tiles() {
@@ -169,6 +181,7 @@ double Solver::advance_stage(bool second) {
     if (material_.pore_pressure_decay_time > 0) ratio *= std::exp(-time_ / material_.pore_pressure_decay_time);
     data.effective_share = static_cast<float>(1 - ratio);
     data.cover = {pointer(friction_), pointer(inverse_turbulence_), pointer(strength_), pointer(stem_drag_)};
+    data.highest_line = static_cast<float>(highest_line_);
     data.structure = pointer(structure_);
     data.inflow = {pointer(inflow_.depth), pointer(inflow_.momentum_x), pointer(inflow_.momentum_y),
                    pointer(inflow_.from_x), pointer(inflow_.from_y)};

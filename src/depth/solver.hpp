@@ -148,6 +148,7 @@ class Solver {
     }
     [[nodiscard]] ActiveRow active_row(const Segment& segment, int row_of_tile) const;
     void expect_waves_of(std::size_t cell, std::size_t tile);
+    void raise_line(std::size_t cell, double depth, double u, double v);
     void set_bed(const Grid<double>& bed);
     void find_slopes(std::size_t cell);
     void set_cover(const GroundValues& ground);
@@ -180,6 +181,7 @@ class Solver {
     std::vector<Segment> segments_;
     std::vector<float> fastest_;  ///< by segment
     std::vector<double> lost_;    ///< m, by segment
+    double highest_line_ = 0;     ///< m: energy line of the highest debris so far, see raise_line()
     double signal_ = 0;           ///< m/s, the fastest wave of the next step; 0: to be found
     double time_ = 0, time_step_ = 0, left_ = 0;
     std::uint64_t steps_ = 0, cell_updates_ = 0;

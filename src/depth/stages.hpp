@@ -43,6 +43,7 @@ struct StageData {
     float friction = 0, strength = 0, inverse_turbulence = 0, turbulent_thickness = 0, viscosity = 0;
     float effective_share = 1;  ///< of the normal stress, borne by the grains
     Cover cover{};
+    float highest_line = 0;            ///< m: no debris is faster than by a fall from there
     const float* structure = nullptr;  ///< by cell, 1: a structure stands there; null: none anywhere
     Inflow inflow{};
 };

@@ -245,7 +245,10 @@ HWY_INLINE void cross_faces(float gravity, const Row& before, int j, const Row& 
             turn_y = load(after.bed_y, k) - load(before.bed_y, j);
     const L turn = along_x ? turn_x * flux.carried_normal + turn_y * flux.carried_across
                            : turn_y * flux.carried_normal + turn_x * flux.carried_across;
-    const L passes = select(wall_before + wall_after > L(1), L(0), open);
+    // Nor does debris climb to a face that its energy does not reach.
+    const L reach =
+        select(flux.mass > L(0), line_before + L(2) * lift * from.depth, line_after + L(2) * lift * onto.depth);
+    const L passes = select(wall_before + wall_after > L(1), L(0), select(reach < L(0), L(0), open));
     store(flux.normal * open, faces.normal, to);
     store(flux.across * passes, faces.across, to);
     store(flux.pressure_before * open * (L(1) - falls_before), faces.pressure_before, to);
@@ -354,7 +357,9 @@ HWY_INLINE void update(const StageData& data, Scratch& scratch, int r, std::ptrd
         const L old_spare = L::load(data.to.spare + i), rise = new_depth - old_depth;
         const L allowed = old_depth * (half * square(old_u, old_v) + old_spare) + energy +
                           lift * (L(0.25F) * rise * rise - half * deeper * deeper);
-        const L wanted = to_depth * square(new_u, new_v), most = larger(zero, allowed) * L(1 / (1 - energy_error));
+        // Nor faster than from the highest energy line of all.
+        const L wanted = to_depth * square(new_u, new_v), fall = L(data.highest_line) - bed;
+        const L most = larger(zero, smaller(allowed * L(1 / (1 - energy_error)), L(2) * gravity * to_depth * fall));
         const L share = select(wanted > most, sqrt(most / larger(wanted, L(1e-30F))), one);
         new_u = new_u * share;
         new_v = new_v * share;
