@@ -122,13 +122,13 @@ double point_mass_speed(const std::function<double(double)>& elevation, double s
                         double gravity) {
     // A step of flight; where it ends below the ground, the ground takes up the velocity normal to it. On ground that
     // the mass follows these blows add up to the normal force.
-    constexpr double time_step = 1e-4, reach = 1e-3, longest = 200;
+    constexpr double time_step = 1e-4, reach = 1e-6, longest = 200;
     double x = start, z = elevation(start), u = 0, w = 0;
     for (double time = 0; x < end; time += time_step) {
         if (time > longest) return std::numeric_limits<double>::quiet_NaN();
-        w -= gravity * time_step;
         x += u * time_step;
-        z += w * time_step;
+        z += (w - gravity * time_step / 2) * time_step;
+        w -= gravity * time_step;
         const double slope = (elevation(x + reach) - elevation(x - reach)) / (2 * reach);
         const double cosine = 1 / std::hypot(1.0, slope), sine = slope * cosine, below = (elevation(x) - z) * cosine;
         if (below < 0) continue;

@@ -8,7 +8,7 @@ namespace talus::test {
 namespace {
 
 constexpr double degrees = std::numbers::pi / 180;
-constexpr double crown = 20, toe = 60, thickness = 2, length = 1000;
+constexpr double crown_x = 20, toe_x = 60, released_depth = 2, profile_length = 1000;
 
 using ProfileFunction = std::function<double(double)>;
 
@@ -29,7 +29,7 @@ double waves(double x) {
 
 std::vector<double> every(double spacing) {
     std::vector<double> places;
-    for (double x = 200; x < length; x += spacing) places.push_back(x);
+    for (double x = 200; x < profile_length; x += spacing) places.push_back(x);
     return places;
 }
 
@@ -44,11 +44,12 @@ struct Slide {
 
 /// A strip of debris slides down a profile.
 Slide slide_down(const ProfileFunction& profile, double cell, double time = 40) {
-    const int columns = static_cast<int>(length / cell);
+    const int columns = static_cast<int>(profile_length / cell);
     depth::Solver solver(grid_of(columns, 1, cell, [&](double x, double) { return profile(x); }), {}, {},
                          depth::Edges::continued);
-    solver.add(grid_of<float>(columns, 1, cell, [](double x, double) { return x > crown && x < toe ? thickness : 0; }));
-    const double volume = solver.volume(), top = profile(crown) + thickness;
+    solver.add(grid_of<float>(columns, 1, cell,
+                              [](double x, double) { return x > crown_x && x < toe_x ? released_depth : 0; }));
+    const double volume = solver.volume(), top = profile(crown_x) + released_depth;
     double lowest = top;
     for (int c = 0; c < columns; ++c) lowest = std::min(lowest, profile((c + 0.5) * cell));
     Slide slide;
@@ -62,7 +63,7 @@ Slide slide_down(const ProfileFunction& profile, double cell, double time = 40) 
             mass += h;
             potential += h * gravity * (z + h / 2);
             energy += h * speed * speed / 2;
-            if (x <= toe) continue;
+            if (x <= toe_x) continue;
             const double share = speed / std::sqrt(2 * gravity * std::max(0.01, top - z));
             if (share > slide.fastest) {
                 slide.fastest = share;
