@@ -20,9 +20,9 @@ namespace profile {
 
 constexpr Quantity quantities[] = {
     {"speed_share", "1", false, Quantity::Site::none,
-     "greatest speed along the ground, below the release, over that of free fall from the crown's surface to the "
-     "ground "
-     "there"},
+     "greatest speed along the ground, below the release, over what free fall allows: from the crown's surface, and "
+     "its "
+     "depth once more, since the front of a dam break has twice the head of its depth (Ritter 1892)"},
     {"energy_gain", "1", false, Quantity::Site::none,
      "largest total energy above that of the start, over that of the mass's fall"},
     {"volume_error", "1", false, Quantity::Site::none, "largest change of the volume, over the volume"},
@@ -96,14 +96,15 @@ struct ProfileSpec {
 /// The ground as both models have it, by distance along the profile.
 struct World {
     terrain::Terrain terrain;
-    double middle = 0;     // of the profile, where the terrain's x is 0, m
-    double crown_top = 0;  // m
+    double middle = 0;                      // of the profile, where the terrain's x is 0, m
+    double crown_top = 0, crown_depth = 0;  // m
 
     World(const ProfileSpec& spec, double width)
         : terrain(make_terrain(spec.shape.end() - spec.shape.start(), width, spec.ground_cell,
                                [&](double x, double) { return spec.shape.elevation(x + spec.middle()); })),
           middle(spec.middle()) {
-        crown_top = ground(spec.from) + spec.thickness / terrain.slope_cosine_at({spec.from - middle, 0});
+        crown_depth = spec.thickness / terrain.slope_cosine_at({spec.from - middle, 0});
+        crown_top = ground(spec.from) + crown_depth;
     }
     [[nodiscard]] double ground(double x) const { return terrain.elevation_at({x - middle, 0}); }
     [[nodiscard]] terrain::Release release(const ProfileSpec& spec, double width) const {
@@ -161,8 +162,9 @@ class Record {
         mass_ = fall_ = energy_ = passes_ = passes_squared_ = 0;
     }
 
+    /// The greatest speed that free fall allows there, m/s.
     [[nodiscard]] double free_fall(double x) const {
-        return std::sqrt(2 * gravity_ * std::max(0.0, world_.crown_top - world_.ground(x)));
+        return std::sqrt(2 * gravity_ * std::max(0.0, world_.crown_top + world_.crown_depth - world_.ground(x)));
     }
     [[nodiscard]] double energy_gain() const { return gain_ / largest_fall_; }
     /// Root mean square of what passed the probe, by mass; NaN: nothing did.
