@@ -141,7 +141,11 @@ class Record {
             double& greatest = greatest_[static_cast<std::size_t>(bin)];
             greatest = std::max(greatest, speed);
         }
-        if (x > spec_.to) speed_share = std::max(speed_share, speed / free_fall(x));
+        if (x > spec_.to) {
+            const double share = speed / free_fall(x);
+            speed_share = std::max(speed_share, share);
+            if (share > 1) too_fast_ += mass;
+        }
     }
 
     void end_step(double time_step) {
@@ -153,13 +157,14 @@ class Record {
             started_ = true;
         }
         volume_error = std::max(volume_error, std::abs(mass_ / first_mass_ - 1));
+        too_fast = std::max(too_fast, too_fast_ / first_mass_);
         gain_ = std::max(gain_, energy - first_energy_);
         largest_fall_ = std::max(largest_fall_, fall - first_fall_);
         passed_ += passes_ * time_step;
         passed_squared_ += passes_squared_ * time_step;
         last_.swap(places_);
         places_.clear();
-        mass_ = fall_ = energy_ = passes_ = passes_squared_ = 0;
+        mass_ = fall_ = energy_ = too_fast_ = passes_ = passes_squared_ = 0;
     }
 
     /// The greatest speed that free fall allows there, m/s.
@@ -191,6 +196,7 @@ class Record {
     }
 
     double speed_share = 0, volume_error = 0;
+    double too_fast = 0;  ///< largest share of the debris that is faster than free fall allows
 
   private:
     struct Place {
@@ -200,7 +206,7 @@ class Record {
     const World& world_;
     double gravity_;
     bool started_ = false;
-    double mass_ = 0, fall_ = 0, energy_ = 0, passes_ = 0, passes_squared_ = 0;  // sums of the step
+    double mass_ = 0, fall_ = 0, energy_ = 0, too_fast_ = 0, passes_ = 0, passes_squared_ = 0;  // sums of the step
     double passed_ = 0, passed_squared_ = 0;
     double first_energy_ = 0, first_fall_ = 0, first_mass_ = 0, gain_ = 0, largest_fall_ = 0;
     std::vector<Place> places_, last_;
@@ -300,6 +306,11 @@ Result<Outcome> compute(const ProfileSpec& spec, const Setting& setting, const W
         const bool good = end.problem.empty();
         if (!good) outcome.notes.push_back(name + ": " + end.problem);
         if (end.left) outcome.notes.push_back(name + ": measured until debris left the terrain");
+        if (record.too_fast > 0) {
+            outcome.notes.push_back(
+                fmt::format("{}: at most {:.2g} % of the debris at once are faster than free fall allows", name,
+                            100 * record.too_fast));
+        }
         const double front = good ? record.front(end.left) : not_computed;
         outcome.measurements.push_back({"speed_share", name, good ? record.speed_share : not_computed, {}});
         outcome.measurements.push_back({"energy_gain", name, good ? record.energy_gain() : not_computed, {}});
