@@ -109,6 +109,7 @@ std::string summary_text(const scene::Scene& scene, const run::RunResult& result
     if (scene.spec.scene.reconstruction && !said) text += " (reconstruction)";
     text += result.status == run::RunStatus::complete ? "\n" : ", PARTIAL RESULT\n";
     text += line("stopped", result.stop_reason);
+    text += line("still moving", run::moving_text(result.still_moving(), scene.spec.outputs.deposited_speed));
     text += line(
         "simulated",
         fmt::format("{:.1f} s in {:.1f} s: {:.2f} x real time, {}", result.simulated_time, result.wall_time,
@@ -207,6 +208,7 @@ std::string summary_json(const scene::Scene& scene, const run::RunResult& result
         {"volume_entrained_m3", seen.erosion.volume},
         {"volume_moving_m3", end.volume_moving},
         {"volume_deposited_m3", end.volume_deposited},
+        {"still_moving", report::still_moving(result)},
         {"volume_held_m3", end.volume_held},
         {"volume_left_m3", end.volume_left},
         {"front_chainage_m", number_or_null<nlohmann::ordered_json>(seen.run_out.front_chainage)},

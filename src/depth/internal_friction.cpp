@@ -28,7 +28,8 @@ struct Traction {
 
 class Stress {
   public:
-    /// `limit`: of its norm, over the pressure, or that of the grains where r_u differs; `stiffest`: stress over strain rate and depth, m2/s.
+    /// `limit`: of its norm, over the pressure, or that of the grains where r_u differs; `stiffest`: stress over strain
+    /// rate and depth, m2/s.
     Stress(const Solver& solver, float limit, float stiffest)
         : solver_(solver),
           gravity_(static_cast<float>(solver.material().gravity)),

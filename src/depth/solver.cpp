@@ -181,8 +181,7 @@ double Solver::take_outflow(const Segment& segment, const Motion& motion) {
 }
 
 Motion Solver::motion() {
-    return {&depth_[origin_], &u_[origin_], &v_[origin_],
-            carries_pore_pressure() ? &pore_pressure_[origin_] : nullptr};
+    return {&depth_[origin_], &u_[origin_], &v_[origin_], carries_pore_pressure() ? &pore_pressure_[origin_] : nullptr};
 }
 
 Motion Solver::next_motion() {
@@ -279,10 +278,27 @@ double Solver::volume() const {
 
 double Solver::bytes_per_cell() const {
     std::size_t bytes = unknown_.size();
-    for (const std::vector<float>* array :
-         {&bed_, &slope_x_, &slope_y_, &depth_, &u_, &v_, &next_depth_, &next_u_, &next_v_, &friction_,
-          &inverse_turbulence_, &strength_, &stem_drag_, &structure_, &pore_pressure_, &next_pore_pressure_, &inflow_.depth, &inflow_.momentum_x,
-          &inflow_.momentum_y, &inflow_.from_x, &inflow_.from_y}) {
+    for (const std::vector<float>* array : {&bed_,
+                                            &slope_x_,
+                                            &slope_y_,
+                                            &depth_,
+                                            &u_,
+                                            &v_,
+                                            &next_depth_,
+                                            &next_u_,
+                                            &next_v_,
+                                            &friction_,
+                                            &inverse_turbulence_,
+                                            &strength_,
+                                            &stem_drag_,
+                                            &structure_,
+                                            &pore_pressure_,
+                                            &next_pore_pressure_,
+                                            &inflow_.depth,
+                                            &inflow_.momentum_x,
+                                            &inflow_.momentum_y,
+                                            &inflow_.from_x,
+                                            &inflow_.from_y}) {
         bytes += array->size() * sizeof(float);
     }
     return static_cast<double>(bytes) / static_cast<double>(geometry_.size());

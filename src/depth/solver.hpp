@@ -53,8 +53,8 @@ struct ActiveRow {
 /// and velocity. Results have the same bits on any number of threads and any instruction set. Allocates nothing after
 /// construction.
 ///
-/// Where r_u decays, or differs between releases, debris carries it: each face moves it with its mass, from upstream, so
-/// that depth times r_u is conserved and r_u stays between the values around it.
+/// Where r_u decays, or differs between releases, debris carries it: each face moves it with its mass, from upstream,
+/// so that depth times r_u is conserved and r_u stays between the values around it.
 ///
 /// Elevations are rounded to the float spacing of the largest one above the lowest (0.03 mm at 500 m), so that the sum
 /// of bed and depth is exact where the level of a lake is such a number.

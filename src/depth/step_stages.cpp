@@ -70,9 +70,8 @@ HWY_INLINE Resistance<L> resistance_at(const StageData& data, std::ptrdiff_t i, 
         return select(here == here, here, L(elsewhere));
     };
     Resistance<L> r;
-    const L effective_share = data.from.pore_pressure == nullptr
-                                  ? L(data.effective_share)
-                                  : L(1) - pore_pressure * L(data.pore_pressure_left);
+    const L effective_share = data.from.pore_pressure == nullptr ? L(data.effective_share)
+                                                                 : L(1) - pore_pressure * L(data.pore_pressure_left);
     r.friction = known(data.cover.friction, data.friction) * effective_share;
     r.strength = known(data.cover.strength, data.strength);
     r.inverse_turbulence = known(data.cover.inverse_turbulence, data.inverse_turbulence);
@@ -314,8 +313,8 @@ HWY_INLINE void update(const StageData& data, Scratch& scratch, int r, std::ptrd
 
     const L m_up = bed_x * m_x + bed_y * m_y, momentum = sqrt(m_x * m_x + m_y * m_y + m_up * m_up);
     const L normal_force = larger(zero, gravity * depth / (one + tilt) + curvature);
-    const L left =
-        resisted(resistance_at(data, i, new_depth, stretch, pore_pressure), gravity, momentum, new_depth, normal_force, stretch, dt);
+    const L left = resisted(resistance_at(data, i, new_depth, stretch, pore_pressure), gravity, momentum, new_depth,
+                            normal_force, stretch, dt);
     const L moves = smaller(new_depth - L(dry_depth), left);
     const L to_speed =
         select(moves > zero, left / (larger(momentum, L(1e-30F)) * larger(new_depth, L(dry_depth))), zero);

@@ -35,12 +35,8 @@ struct ParticleSums {
         }
     }
     friend TALUS_DEVICE ParticleSums operator+(const ParticleSums& a, const ParticleSums& b) {
-        return {a.held + b.held,
-                a.moving + b.moving,
-                a.deposited + b.deposited,
-                a.speed_squared + b.speed_squared,
-                a.speed + b.speed,
-                a.height + b.height};
+        return {a.held + b.held,   a.moving + b.moving, a.deposited + b.deposited, a.speed_squared + b.speed_squared,
+                a.speed + b.speed, a.height + b.height};
     }
 };
 

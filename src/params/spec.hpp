@@ -92,10 +92,10 @@ struct InflowSpec {
 
 /// A row of a hydrograph; between rows all change linearly.
 struct InflowSample {
-    double time = 0;       ///< s
-    double discharge = 0;  ///< m3/s of bulk debris at its own density
-    double velocity = 0;   ///< m/s, along the ground
-    double density = 0;    ///< kg/m3; 0 in every row: that of the material
+    double time = 0;                  ///< s
+    double discharge = 0;             ///< m3/s of bulk debris at its own density
+    double velocity = 0;              ///< m/s, along the ground
+    double density = 0;               ///< kg/m3; 0 in every row: that of the material
     double pore_pressure_ratio = -1;  ///< r_u, of a zoom; negative in every row: that of the material
     bool operator==(const InflowSample&) const = default;
 };

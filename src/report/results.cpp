@@ -73,6 +73,14 @@ std::string plural(std::size_t n, std::string_view word) {
     return fmt::format("{} {}{}", n, word, n == 1 ? "" : "s");
 }
 
+Json still_moving(const run::RunResult& result) {
+    const run::StillMoving moving = result.still_moving();
+    return {{"volume_m3", moving.volume},
+            {"share_percent", 100 * moving.share},
+            {"greatest_speed_mps", moving.greatest_speed},
+            {"slow_since_s", number_or_null<Json>(moving.slow_since)}};
+}
+
 Json status(const run::RunResult& result) {
     const bool fault = result.status == run::RunStatus::fault, complete = result.status == run::RunStatus::complete;
     return {{"name", complete ? "complete"
@@ -81,7 +89,8 @@ Json status(const run::RunResult& result) {
             {"partial", !complete},
             {"fault", fault},
             {"stop_reason", result.stop_reason},
-            {"simulated_time_s", result.simulated_time}};
+            {"simulated_time_s", result.simulated_time},
+            {"still_moving", still_moving(result)}};
 }
 
 Json verdict(const run::NumericalVerdict& said) {
@@ -222,6 +231,7 @@ Json quality(const scene::Scene& scene, const run::RunResult& result, const run:
     const observe::Compression& c = o.compression;
     Json all = {
         fact("Status", result.stop_reason.empty() ? state : state + ("; " + result.stop_reason)),
+        fact("Still moving", run::moving_text(result.still_moving(), scene.spec.outputs.deposited_speed)),
         fact("Simulated time",
              fmt::format("{} s in {} s of wall time, {} of {} to {} ms", fixed(result.simulated_time, 1),
                          fixed(result.wall_time, 1), plural(result.steps, "step"),

@@ -49,8 +49,8 @@ std::vector<params::InflowSample> hydrograph_of(const std::vector<params::Inflow
                             flow[k].pore_pressure_ratio});
         rows.push_back(flow[k]);
     }
-    rows.push_back({rows.back().time + BoundaryFlow::interval, 0, rows.back().velocity, 0,
-                    rows.back().pore_pressure_ratio});
+    rows.push_back(
+        {rows.back().time + BoundaryFlow::interval, 0, rows.back().velocity, 0, rows.back().pore_pressure_ratio});
     terrain::Inflow whole;
     whole.hydrograph = rows;
     const double scale = volume / whole.volume();

@@ -35,12 +35,17 @@ std::string RestDetector::reason() const {
 }
 
 bool DeclineDetector::declined(double time, double value, bool waiting) {
-    peak_ = std::max(peak_, value);
+    peak_ = waiting ? value : std::max(peak_, value);
     if (share_ <= 0 || waiting || !(peak_ > 0) || value >= share_ * peak_) {
         low_since_ = time;
         return false;
     }
     return time - low_since_ >= duration_;
+}
+
+void DeclineDetector::stir(double time) {
+    low_since_ = time;
+    peak_ = 0;
 }
 
 std::string DeclineDetector::reason() const {

@@ -14,8 +14,8 @@ namespace talus::run {
 /// What of the debris moves, in particles or m3.
 struct MovingDebris {
     double debris = 0;
-    double moving = 0;     ///< faster than outputs.deposited_speed
-    double fast = 0;       ///< ten times as fast
+    double moving = 0;      ///< faster than outputs.deposited_speed
+    double fast = 0;        ///< ten times as fast
     double too_little = 0;  ///< less makes no front, however little there is in total
 };
 [[nodiscard]] MovingDebris moving_particles(const sim::StateSummary& state, const sim::Motion& motion);
@@ -41,14 +41,16 @@ class RestDetector {
 };
 
 /// Decides when a sum over the debris, its kinetic energy or momentum, has been below a share of its peak for long
-/// enough. Other programs end runs so. It is no measure of rest: that of a thousandth of the debris in free fall is
-/// small compared with the peak, and so is that of all debris running out slowly.
+/// enough; the peak since the last debris started or came in, so that a small late release is not cut off beside a
+/// large early one. Other programs end runs so. It is no measure of rest: that of a thousandth of the debris in free
+/// fall is small compared with the peak, and so is that of all debris running out slowly.
 class DeclineDetector {
   public:
-    DeclineDetector(const char* what, double share, double duration) : what_(what), share_(share), duration_(duration) {}
+    DeclineDetector(const char* what, double share, double duration)
+        : what_(what), share_(share), duration_(duration) {}
 
     bool declined(double time, double value, bool waiting);
-    void stir(double time) { low_since_ = time; }
+    void stir(double time);
     /// "its kinetic energy fell below 1 % of its peak (for 3 s)".
     [[nodiscard]] std::string reason() const;
 
