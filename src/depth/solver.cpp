@@ -208,8 +208,10 @@ double Solver::advance_stage(bool second) {
     data.turbulent_thickness = static_cast<float>(material_.turbulent_thickness);
     data.viscosity = static_cast<float>(material_.viscosity);
     data.effective_share = static_cast<float>(1 - material_.pore_pressure_ratio);
-    data.pore_pressure_left = static_cast<float>(pore_pressure_left_);
-    data.fresh_pore_pressure = static_cast<float>(material_.pore_pressure_ratio / pore_pressure_left_);
+    const double decay = material_.pore_pressure_decay_time;
+    const double halfway = pore_pressure_left_ * (decay > 0 ? std::exp(-time_step_ / (2 * decay)) : 1);
+    data.pore_pressure_left = static_cast<float>(halfway);
+    data.fresh_pore_pressure = static_cast<float>(material_.pore_pressure_ratio / std::max(halfway, 1e-30));
     data.cover = {pointer(friction_), pointer(inverse_turbulence_), pointer(strength_), pointer(stem_drag_)};
     data.structure = pointer(structure_);
     data.inflow = {pointer(inflow_.depth), pointer(inflow_.momentum_x), pointer(inflow_.momentum_y),

@@ -40,7 +40,7 @@ struct StageData {
     float time_step = 0, inverse_cell = 0, gravity = 0;
     float friction = 0, strength = 0, inverse_turbulence = 0, turbulent_thickness = 0, viscosity = 0;
     float effective_share = 1;      ///< of the normal stress, borne by the grains, where pore pressure is not carried
-    float pore_pressure_left = 1;   ///< r_u over what Motion has
+    float pore_pressure_left = 1;   ///< r_u over what Motion has, in the middle of the step
     float fresh_pore_pressure = 0;  ///< of what comes in
     Cover cover{};
     const float* structure = nullptr;  ///< by cell, 1: a structure stands there; null: none anywhere

@@ -250,19 +250,19 @@ HWY_INLINE L pore_pressure_after(const StageData& data, const Scratch& scratch, 
     const Numbers& north = scratch.y[static_cast<std::size_t>((r + 1) & 1)].pore_pressure;
     const L dt(data.time_step), per_cell = dt * L(data.inverse_cell), own = load(row.pore_pressure, j);
     L content = depth * own - per_cell * (load(x, j) - load(x, j - 1) + (load(north, j) - load(south, j)));
-    L low = own, high = own;
-    const auto bound_by = [&](const L& other) HWY_ATTR {
-        low = smaller(low, other);
-        high = larger(high, other);
+    L low(1e30F), high(0);
+    const auto bound_by = [&](const L& brings, const L& pore_pressure) HWY_ATTR {
+        low = smaller(low, select(brings > L(0), pore_pressure, low));
+        high = larger(high, select(brings > L(0), pore_pressure, high));
     };
-    bound_by(load(row.pore_pressure, j - 1));
-    bound_by(load(row.pore_pressure, j + 1));
-    bound_by(L::load(data.from.pore_pressure + i - data.stride));
-    bound_by(L::load(data.from.pore_pressure + i + data.stride));
+    for (const std::ptrdiff_t beside : {std::ptrdiff_t{0}, std::ptrdiff_t{-1}, std::ptrdiff_t{1},
+                                        -std::ptrdiff_t{data.stride}, std::ptrdiff_t{data.stride}}) {
+        bound_by(L::load(data.from.depth + i + beside), L::load(data.from.pore_pressure + i + beside));
+    }
     if (data.inflow.depth != nullptr) {
-        const L fresh(data.fresh_pore_pressure);
-        content = content + dt * L::load(data.inflow.depth + i) * fresh;
-        bound_by(fresh);
+        const L comes = L::load(data.inflow.depth + i), fresh(data.fresh_pore_pressure);
+        content = content + dt * comes * fresh;
+        bound_by(comes, fresh);
     }
     return mixed_pore_pressure(content, new_depth, own, low, high);
 }
@@ -351,11 +351,12 @@ HWY_INLINE void update(const StageData& data, Scratch& scratch, int r, std::ptrd
     if (carries) {
         change = change + difference(pore_pressure, load(row.pore_pressure, j));
         if (data.second) {
-            const L old_depth = L::load(data.to.depth + i), old = L::load(data.to.pore_pressure + i);
+            const L old_depth = L::load(data.to.depth + i), before = L::load(data.to.pore_pressure + i);
+            const L old = select(old_depth > zero, before, pore_pressure);
             const L content = half * (old_depth * old + new_depth * pore_pressure);
             pore_pressure = mixed_pore_pressure(content, to_depth, pore_pressure, smaller(old, pore_pressure),
                                                 larger(old, pore_pressure));
-            change = change + difference(pore_pressure, old);
+            change = change + difference(pore_pressure, before);
         }
         pore_pressure.store(data.to.pore_pressure + i);
     }
