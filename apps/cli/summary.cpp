@@ -82,6 +82,12 @@ std::string remedy(const params::SolverSpec& solver) {
                                         : "halve solver.largest_time_step_s and solver.displacement_limit");
 }
 
+std::string moving_text(const run::StillMoving& moving, double deposited_speed) {
+    if (!(moving.volume > 0)) return fmt::format("nothing faster than {:.3g} m/s", deposited_speed);
+    return fmt::format("{:.3g} m3 ({:.3g} % of the debris), at up to {:.2g} m/s", moving.volume, 100 * moving.share,
+                       moving.greatest_speed);
+}
+
 std::string line(const char* label, const std::string& text) {
     return fmt::format("  {:<16} {}\n", label, text);
 }
@@ -109,7 +115,7 @@ std::string summary_text(const scene::Scene& scene, const run::RunResult& result
     if (scene.spec.scene.reconstruction && !said) text += " (reconstruction)";
     text += result.status == run::RunStatus::complete ? "\n" : ", PARTIAL RESULT\n";
     text += line("stopped", result.stop_reason);
-    text += line("still moving", run::moving_text(result.still_moving(), scene.spec.outputs.deposited_speed));
+    text += line("still moving", moving_text(result.still_moving(), scene.spec.outputs.deposited_speed));
     text += line(
         "simulated",
         fmt::format("{:.1f} s in {:.1f} s: {:.2f} x real time, {}", result.simulated_time, result.wall_time,

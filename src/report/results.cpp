@@ -58,6 +58,13 @@ MassBalance mass_balance(const observe::Observation& observation) {
     return m;
 }
 
+std::string moving_text(const run::RunResult& result, double deposited_speed) {
+    const run::StillMoving moving = result.still_moving();
+    if (!(moving.volume > 0)) return fmt::format("nothing faster than {} m/s", plain(deposited_speed));
+    return fmt::format("{} m³ ({} % of the debris), at up to {} m/s", significant(moving.volume, 3),
+                       significant(100 * moving.share, 3), significant(moving.greatest_speed, 2));
+}
+
 }  // namespace
 
 std::string place(const scene::Scene& scene, const PlanPoint& at) {
@@ -231,7 +238,7 @@ Json quality(const scene::Scene& scene, const run::RunResult& result, const run:
     const observe::Compression& c = o.compression;
     Json all = {
         fact("Status", result.stop_reason.empty() ? state : state + ("; " + result.stop_reason)),
-        fact("Still moving", run::moving_text(result.still_moving(), scene.spec.outputs.deposited_speed)),
+        fact("Still moving", moving_text(result, scene.spec.outputs.deposited_speed)),
         fact("Simulated time",
              fmt::format("{} s in {} s of wall time, {} of {} to {} ms", fixed(result.simulated_time, 1),
                          fixed(result.wall_time, 1), plural(result.steps, "step"),

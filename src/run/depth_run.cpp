@@ -174,7 +174,7 @@ class GridRun {
                                                   std::isfinite(scene_.releases[order()[released_]].spec.start_time));
         MovingDebris debris{now.volume_moving + now.volume_deposited, now.volume_moving};
         if (!(debris.debris > 0) && !waits) {
-            stop_reason_ = no_debris_reason;
+            stop_reason_ = now.volume_left > 0 ? all_left_reason : no_debris_reason;
             return;
         }
         if (debris.moving < spec.stop_moving_share * debris.debris) {  // else that alone says that it goes on

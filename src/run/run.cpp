@@ -55,7 +55,7 @@ Run::Run(RunStart start)
       smallest_time_step_(std::numeric_limits<double>::infinity()) {
     observer_.watch(start.gauges);
     observer_.expect(summary().seeded + simulation_.inflow().remaining());
-    if (no_debris()) stop(RunPhase::at_rest, "there is no debris");
+    if (no_debris()) stop(RunPhase::at_rest, no_debris_reason);
 }
 
 void Run::stop(RunPhase phase, std::string why) {
@@ -84,7 +84,7 @@ bool Run::over() {
     if (reached_end_time(model().solver, summary())) {
         stop(RunPhase::ended, with_what_moved(end_time_reason(model().solver), moving_now()));
     } else if (no_debris()) {
-        stop(RunPhase::at_rest, no_debris_reason);
+        stop(RunPhase::at_rest, all_left_reason);
     }
     return phase_ != RunPhase::ready;
 }

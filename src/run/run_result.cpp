@@ -31,12 +31,6 @@ StillMoving still_moving(const std::vector<observe::TimeSample>& timeseries, con
     return moving;
 }
 
-std::string moving_text(const StillMoving& moving, double deposited_speed) {
-    if (!(moving.volume > 0)) return fmt::format("nothing faster than {:.3g} m/s", deposited_speed);
-    return fmt::format("{:.3g} m3 ({:.3g} % of the debris), at up to {:.2g} m/s", moving.volume, 100 * moving.share,
-                       moving.greatest_speed);
-}
-
 std::string with_what_moved(std::string reason, const StillMoving& moving) {
     if (!(moving.volume > 0)) return reason;
     reason += fmt::format(" with {:.3g} m3 still moving ({:.3g} % of the debris), at up to {:.2g} m/s", moving.volume,

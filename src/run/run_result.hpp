@@ -32,8 +32,6 @@ struct StillMoving {
 };
 [[nodiscard]] StillMoving still_moving(const std::vector<observe::TimeSample>& timeseries,
                                        const observe::TimeSample& end);
-/// "12.6 m3 (2.1 % of the debris), at up to 3.2 m/s", or "nothing faster than 0.1 m/s".
-[[nodiscard]] std::string moving_text(const StillMoving& moving, double deposited_speed);
 /// A reason for which a run ended, and what still moved: "reached ... with 12.6 m3 still moving (...)".
 [[nodiscard]] std::string with_what_moved(std::string reason, const StillMoving& moving);
 

@@ -88,6 +88,7 @@ class StopRule {
 /// "reached solver.end_time_s = 120".
 [[nodiscard]] std::string end_time_reason(const params::SolverSpec& solver);
 
-inline constexpr const char* no_debris_reason = "all debris has left the terrain";
+inline constexpr const char *no_debris_reason = "there is no debris",
+                            *all_left_reason = "all debris has left the terrain";
 
 }  // namespace talus::run

@@ -1,4 +1,5 @@
 #include <cmath>
+#include <limits>
 #include <stdexcept>
 
 #include <gmock/gmock.h>
@@ -120,6 +121,12 @@ TEST_F(DepthAveragedRun, ends_once_nothing_is_left_or_as_it_is_asked_to) {
         const auto result = run_scene(loaded("", overrides), {});
         return result ? result->stop_reason : result.error().message;
     };
+    scene::Scene untriggered = loaded("");
+    untriggered.releases[0].spec.start_time = std::numeric_limits<double>::infinity();
+    const auto nothing = run_scene(untriggered, {});
+    ASSERT_TRUE(nothing);
+    EXPECT_EQ(nothing->stop_reason, "there is no debris");
+    EXPECT_LT(nothing->simulated_time, 1);
     // Without friction all of it leaves the valley at its end.
     const std::string left = reason({"material.friction_coefficient=0", "solver.end_time_s=4000"});
     EXPECT_THAT(left, testing::AnyOf(testing::StartsWith("debris came to rest"),
