@@ -70,7 +70,7 @@ TEST(Entrainment, brings_debris_whose_pore_pressure_decays_from_then) {
     const double time = simulation.state().time;
     const auto& entries = simulation.state().entry_of_id;
     ASSERT_EQ(entries.size(), simulation.state().seeded);
-    EXPECT_GT(entries[released].time, 0.2);
+    EXPECT_GT(entries[released].time, 0.05);
     EXPECT_NEAR(entries.back().time, time, 0.1);
     EXPECT_NEAR(effective_share(simulation.model(), entries, entries.size() - 1, time), 0.7, 0.01);
     EXPECT_LT(entries[released].time, entries.back().time);
