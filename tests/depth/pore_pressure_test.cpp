@@ -43,10 +43,10 @@ TEST(PorePressure, decays_from_when_debris_is_added) {
 /// Two releases with pore pressures of their own that run into each other in a valley.
 depth::Solver two_in_a_valley(const depth::Material& material, double first = 0.8, double second = 0.2) {
     depth::Solver solver(
-        grid_of(100, 60, 1, [](double x, double y) { return 0.3 * std::abs(x - 50) + 0.1 * std::abs(y - 30); }),
+        grid_of(100, 60, 1, [](double x, double y) { return 0.3 * std::abs(x - 50) + 0.3 * std::abs(y - 30); }),
         material);
     const auto heap = [](double x_0) {
-        return grid_of<float>(100, 60, 1, [&](double x, double y) { return std::hypot(x - x_0, y - 40) < 9 ? 2 : 0; });
+        return grid_of<float>(100, 60, 1, [&](double x, double y) { return std::hypot(x - x_0, y - 30) < 9 ? 2 : 0; });
     };
     solver.add(heap(30), first);
     solver.add(heap(70), second);
