@@ -82,6 +82,12 @@ std::string remedy(const params::SolverSpec& solver) {
                                         : "halve solver.largest_time_step_s and solver.displacement_limit");
 }
 
+std::string moving_text(const run::StillMoving& moving, double deposited_speed) {
+    if (!(moving.volume > 0)) return fmt::format("nothing faster than {:.3g} m/s", deposited_speed);
+    return fmt::format("{:.3g} m3 ({:.3g} % of the debris), at up to {:.2g} m/s", moving.volume, 100 * moving.share,
+                       moving.greatest_speed);
+}
+
 std::string line(const char* label, const std::string& text) {
     return fmt::format("  {:<16} {}\n", label, text);
 }
@@ -109,6 +115,7 @@ std::string summary_text(const scene::Scene& scene, const run::RunResult& result
     if (scene.spec.scene.reconstruction && !said) text += " (reconstruction)";
     text += result.status == run::RunStatus::complete ? "\n" : ", PARTIAL RESULT\n";
     text += line("stopped", result.stop_reason);
+    text += line("still moving", moving_text(result.still_moving(), scene.spec.outputs.deposited_speed));
     text += line(
         "simulated",
         fmt::format("{:.1f} s in {:.1f} s: {:.2f} x real time, {}", result.simulated_time, result.wall_time,
@@ -207,6 +214,7 @@ std::string summary_json(const scene::Scene& scene, const run::RunResult& result
         {"volume_entrained_m3", seen.erosion.volume},
         {"volume_moving_m3", end.volume_moving},
         {"volume_deposited_m3", end.volume_deposited},
+        {"still_moving", report::still_moving(result)},
         {"volume_held_m3", end.volume_held},
         {"volume_left_m3", end.volume_left},
         {"front_chainage_m", number_or_null<nlohmann::ordered_json>(seen.run_out.front_chainage)},

@@ -28,7 +28,8 @@ struct Traction {
 
 class Stress {
   public:
-    /// `limit`: of its norm, over the pressure; `stiffest`: stress over strain rate and depth, m2/s.
+    /// `limit`: of its norm, over the pressure, or that of the grains where r_u differs; `stiffest`: stress over strain
+    /// rate and depth, m2/s.
     Stress(const Solver& solver, float limit, float stiffest)
         : solver_(solver),
           gravity_(static_cast<float>(solver.material().gravity)),
@@ -48,14 +49,16 @@ class Stress {
         const float rise = -(stretch + aside);  // volume stays
         const float rate = std::sqrt(stretch * stretch + aside * aside + rise * rise + 2 * shear * shear);
         if (!(rate > 0)) return {};
-        const float pressure = std::min(weight(a), weight(b)) / std::max(least_relief, 1 - limit_ * rise / rate);
-        const float over_rate = std::min(limit_ * pressure / rate, stiffest_ * std::min(depth(a), depth(b)));
+        const float limit = solver_.carries_pore_pressure() ? limit_ * (1 - (ratio(a) + ratio(b)) / 2) : limit_;
+        const float pressure = std::min(weight(a), weight(b)) / std::max(least_relief, 1 - limit * rise / rate);
+        const float over_rate = std::min(limit * pressure / rate, stiffest_ * std::min(depth(a), depth(b)));
         const float pull = over_rate * (stretch - rise), drag = over_rate * shear;
         return east ? Traction{pull, drag} : Traction{drag, pull};
     }
 
   private:
     [[nodiscard]] float depth(const Cell& at) const { return solver_.depth_at(at.column, at.row); }
+    [[nodiscard]] float ratio(const Cell& at) const { return solver_.pore_pressure_ratio_at(at.column, at.row); }
     [[nodiscard]] float velocity(const Cell& at, bool u) const {
         return u ? solver_.u_at(at.column, at.row) : solver_.v_at(at.column, at.row);
     }
@@ -88,13 +91,6 @@ class Stress {
     float gravity_, inverse_cell_, limit_, stiffest_;
 };
 
-/// Of the normal stress, borne by the grains now.
-double effective_share(const Solver& solver) {
-    const Material& material = solver.material();
-    const double decay = material.pore_pressure_decay_time;
-    return 1 - material.pore_pressure_ratio * (decay > 0 ? std::exp(-solver.time() / decay) : 1);
-}
-
 }  // namespace
 
 InternalFriction::InternalFriction(const Solver& solver, double coefficient) : coefficient_(coefficient) {
@@ -108,7 +104,8 @@ void InternalFriction::resist(Solver& solver) {
     const GridGeometry& grid = solver.geometry();
     const double step = solver.time_step() / passes;
     const float over_mass = static_cast<float>(step / grid.cell);
-    const Stress stress(solver, static_cast<float>(std::sqrt(2.0) * coefficient_ * effective_share(solver)),
+    const double everywhere = solver.carries_pore_pressure() ? 0 : solver.material().pore_pressure_ratio;
+    const Stress stress(solver, static_cast<float>(std::sqrt(2.0) * coefficient_ * (1 - everywhere)),
                         static_cast<float>(stable_share * grid.cell * grid.cell / step));
     for (int pass = 0; pass < passes; ++pass) {
         solver.for_each_active_row([&](const ActiveRow& row) {

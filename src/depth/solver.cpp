@@ -15,6 +15,8 @@ namespace {
 
 /// Share of the stable time step of a scheme whose waves may cross a cell in it. Mass leaves no cell in more than one.
 constexpr double courant_number = 0.6;
+/// Of the pore pressure that all debris refers to: then it is reckoned anew.
+constexpr double least_left = 1e-15;
 
 float greater_or_unknown(float a, float b) {
     return std::isnan(a) || b <= a ? a : b;
@@ -43,19 +45,26 @@ Solver::Solver(const Grid<double>& bed, const Material& material, const GroundVa
     segments_.reserve(tile_count);
     fastest_.assign(tile_count, 0);
     lost_.assign(tile_count, 0);
+    if (material_.pore_pressure_ratio > 0 && material_.pore_pressure_decay_time > 0) carry_pore_pressure();
     set_cover(ground);
     set_bed(bed);
 }
 
-void Solver::add(const Grid<float>& depth) {
+void Solver::add(const Grid<float>& depth, std::optional<double> pore_pressure_ratio) {
+    const double ratio = pore_pressure_ratio.value_or(material_.pore_pressure_ratio);
+    if (!carries_pore_pressure() && ratio != material_.pore_pressure_ratio) carry_pore_pressure();
     for (int row = 0; row < geometry_.rows; ++row) {
         for (int column = 0; column < geometry_.columns; ++column) {
-            if (const float more = depth.at(column, row); more > 0) inject(column, row, more, 0, 0);
+            if (const float more = depth.at(column, row); more > 0) mix_in(column, row, more, 0, 0, ratio);
         }
     }
 }
 
 void Solver::inject(int column, int row, double depth, double u, double v) {
+    mix_in(column, row, depth, u, v, material_.pore_pressure_ratio);
+}
+
+void Solver::mix_in(int column, int row, double depth, double u, double v, double pore_pressure_ratio) {
     const std::size_t i = index(column, row);
     if (unknown_[i] || !(depth > 0)) return;
     const double all = depth_[i] + depth;
@@ -65,6 +74,10 @@ void Solver::inject(int column, int row, double depth, double u, double v) {
     u_[i] = next_u_[i] = mixed(u_[i], u);
     v_[i] = next_v_[i] = mixed(v_[i], v);
     spare_[i] = next_spare_[i] = mixed(spare_[i], 0);
+    if (carries_pore_pressure()) {
+        pore_pressure_[i] = next_pore_pressure_[i] =
+            mixed(pore_pressure_[i], pore_pressure_ratio / pore_pressure_left_);
+    }
     depth_[i] = next_depth_[i] = static_cast<float>(all);
     raise_line(i, all, u, v);
     expect_waves_of(i, tile_of(column, row));
@@ -114,6 +127,27 @@ void Solver::raise_line(std::size_t cell, double depth, double u, double v) {
     highest_line_ = std::max(highest_line_, bed_[cell] + 2 * depth + head);
 }
 
+void Solver::carry_pore_pressure() {
+    pore_pressure_.assign(depth_.size(), static_cast<float>(material_.pore_pressure_ratio));
+    next_pore_pressure_ = pore_pressure_;
+    drained_from_ = time_;
+}
+
+/// Excess pressure falls as the first mode of consolidation does (Hutchinson 1986; see sim/physics/resistance.hpp).
+void Solver::drain() {
+    const double decay = material_.pore_pressure_decay_time;
+    if (!carries_pore_pressure() || !(decay > 0)) return;
+    pore_pressure_left_ = std::exp((drained_from_ - time_) / decay);
+    if (pore_pressure_left_ > least_left) return;
+    // Debris that starts or comes in now would no longer fit into a float beside that of then.
+    const auto left = static_cast<float>(pore_pressure_left_);
+    for (std::vector<float>* array : {&pore_pressure_, &next_pore_pressure_}) {
+        for (float& pressure : *array) pressure *= left;
+    }
+    drained_from_ = time_;
+    pore_pressure_left_ = 1;
+}
+
 void Solver::find_active_tiles() {
     // What changes in a step reaches at most four cells further in the next.
     const auto active = [&](int column, int row) {
@@ -159,13 +193,23 @@ double Solver::take_outflow(const Segment& segment, const Motion& motion) {
     return sum;
 }
 
+Motion Solver::motion() {
+    return {&depth_[origin_], &u_[origin_], &v_[origin_], &spare_[origin_],
+            carries_pore_pressure() ? &pore_pressure_[origin_] : nullptr};
+}
+
+Motion Solver::next_motion() {
+    return {&next_depth_[origin_], &next_u_[origin_], &next_v_[origin_], &next_spare_[origin_],
+            carries_pore_pressure() ? &next_pore_pressure_[origin_] : nullptr};
+}
+
 double Solver::advance_stage(bool second) {
     const auto pointer = [&](std::vector<float>& array) { return array.empty() ? nullptr : array.data() + origin_; };
     StageData data;
     data.stride = static_cast<int>(stride_);
     data.bed = pointer(bed_);
-    data.from = {pointer(depth_), pointer(u_), pointer(v_), pointer(spare_)};
-    data.to = {pointer(next_depth_), pointer(next_u_), pointer(next_v_), pointer(next_spare_)};
+    data.from = motion();
+    data.to = next_motion();
     if (second) std::swap(data.from, data.to);
     data.second = second;
     data.time_step = static_cast<float>(time_step_);
@@ -177,9 +221,11 @@ double Solver::advance_stage(bool second) {
         material_.turbulent_friction > 0 ? static_cast<float>(1 / material_.turbulent_friction) : 0;
     data.turbulent_thickness = static_cast<float>(material_.turbulent_thickness);
     data.viscosity = static_cast<float>(material_.viscosity);
-    double ratio = material_.pore_pressure_ratio;
-    if (material_.pore_pressure_decay_time > 0) ratio *= std::exp(-time_ / material_.pore_pressure_decay_time);
-    data.effective_share = static_cast<float>(1 - ratio);
+    data.effective_share = static_cast<float>(1 - material_.pore_pressure_ratio);
+    const double decay = material_.pore_pressure_decay_time;
+    const double halfway = pore_pressure_left_ * (decay > 0 ? std::exp(-time_step_ / (2 * decay)) : 1);
+    data.pore_pressure_left = static_cast<float>(halfway);
+    data.fresh_pore_pressure = static_cast<float>(material_.pore_pressure_ratio / std::max(halfway, 1e-30));
     data.cover = {pointer(friction_), pointer(inverse_turbulence_), pointer(strength_), pointer(stem_drag_)};
     data.highest_line = static_cast<float>(highest_line_);
     data.structure = pointer(structure_);
@@ -212,9 +258,8 @@ double Solver::next_step(double longest) const {
 Status Solver::advance(double longest) {
     find_active_tiles();
     if (edges_ == Edges::continued) {  // what was added since, too
-        continue_rows({depth_.data() + origin_, u_.data() + origin_, v_.data() + origin_, spare_.data() + origin_});
-        continue_rows({next_depth_.data() + origin_, next_u_.data() + origin_, next_v_.data() + origin_,
-                       next_spare_.data() + origin_});
+        continue_rows(motion());
+        continue_rows(next_motion());
     }
     time_step_ = next_step(longest);
     if (!segments_.empty()) {
@@ -226,6 +271,7 @@ Status Solver::advance(double longest) {
     for (std::size_t s = 0; s < segments_.size(); ++s) fastest = greater_or_unknown(fastest, fastest_[s]);
     signal_ = fastest;
     time_ += time_step_;
+    drain();
     ++steps_;
     for (const Segment& s : segments_) {
         cell_updates_ += static_cast<std::uint64_t>(s.tiles) * tile_edge * tile_edge;
@@ -265,6 +311,8 @@ double Solver::bytes_per_cell() const {
                                             &strength_,
                                             &stem_drag_,
                                             &structure_,
+                                            &pore_pressure_,
+                                            &next_pore_pressure_,
                                             &inflow_.depth,
                                             &inflow_.momentum_x,
                                             &inflow_.momentum_y,
@@ -298,6 +346,7 @@ std::uint64_t Solver::hash() const {
     hash.add(std::span<const float>(u_));
     hash.add(std::span<const float>(v_));
     hash.add(std::span<const float>(spare_));
+    hash.add(std::span<const float>(pore_pressure_));
     return hash.value();
 }
 

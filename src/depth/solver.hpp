@@ -3,6 +3,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <string_view>
 #include <vector>
 
@@ -23,7 +24,7 @@ struct Material {
     double turbulent_thickness = 0;       ///< m, normal to the ground, of flow with that xi; 0: of any
     double cohesion = 0;                  ///< Pa
     double viscosity = 0;                 ///< kinematic, m2/s, of laminar flow over ground that holds it; 0: none
-    double pore_pressure_ratio = 0;       ///< r_u, at the start
+    double pore_pressure_ratio = 0;       ///< r_u, when debris starts to move or comes in
     double pore_pressure_decay_time = 0;  ///< s; 0: constant
     double gravity = 9.80665;             ///< m/s2
 };
@@ -52,6 +53,9 @@ struct ActiveRow {
 /// and velocity. Results have the same bits on any number of threads and any instruction set. Allocates nothing after
 /// construction.
 ///
+/// Where r_u decays, or differs between releases, debris carries it: each face moves it with its mass, from upstream,
+/// so that depth times r_u is conserved and r_u stays between the values around it.
+///
 /// Elevations are rounded to the float spacing of the largest one above the lowest (0.03 mm at 500 m), so that the sum
 /// of bed and depth is exact where the level of a lake is such a number.
 class Solver {
@@ -60,9 +64,10 @@ class Solver {
     Solver(const Grid<double>& bed, const Material& material, const GroundValues& ground = {},
            Edges edges = Edges::open);
 
-    /// Adds debris at rest: m of vertical depth per cell of the grid. Unknown ground takes none.
-    void add(const Grid<float>& depth);
-    /// Adds debris with a velocity to a cell of known ground; momenta add up.
+    /// Adds debris at rest: m of vertical depth per cell of the grid. Unknown ground takes none. `pore_pressure_ratio`:
+    /// its r_u now; absent: that of the material.
+    void add(const Grid<float>& depth, std::optional<double> pore_pressure_ratio = {});
+    /// Adds debris with a velocity and the material's r_u to a cell of known ground; momenta add up.
     void inject(int column, int row, double depth, double u, double v);
     /// What comes in to a cell from the next step on, besides what comes already.
     struct CellInflow {
@@ -107,6 +112,12 @@ class Solver {
     [[nodiscard]] float bed_at(int column, int row) const { return bed_[index(column, row)]; }
     [[nodiscard]] float slope_x_at(int column, int row) const { return slope_x_[index(column, row)]; }
     [[nodiscard]] float slope_y_at(int column, int row) const { return slope_y_[index(column, row)]; }
+    [[nodiscard]] bool carries_pore_pressure() const { return !pore_pressure_.empty(); }
+    /// r_u of the debris there, now.
+    [[nodiscard]] float pore_pressure_ratio_at(int column, int row) const {
+        return carries_pore_pressure() ? pore_pressure_[index(column, row)] * static_cast<float>(pore_pressure_left_)
+                                       : static_cast<float>(material_.pore_pressure_ratio);
+    }
     [[nodiscard]] bool known(int column, int row) const { return !unknown_[index(column, row)]; }
     [[nodiscard]] bool built(int column, int row) const {
         return !structure_.empty() && structure_[index(column, row)] > 0;
@@ -136,7 +147,7 @@ class Solver {
         }
     }
 
-    /// Hash of time, depths and velocities of all cells.
+    /// Hash of time, depths and velocities of all cells, and of the pore pressure that debris carries.
     [[nodiscard]] std::uint64_t hash() const;
 
   private:
@@ -147,8 +158,13 @@ class Solver {
         return static_cast<std::size_t>((row + margin) / tile_edge) * tile_columns_ + (column + margin) / tile_edge;
     }
     [[nodiscard]] ActiveRow active_row(const Segment& segment, int row_of_tile) const;
+    void mix_in(int column, int row, double depth, double u, double v, double pore_pressure_ratio);
     void expect_waves_of(std::size_t cell, std::size_t tile);
     void raise_line(std::size_t cell, double depth, double u, double v);
+    void carry_pore_pressure();
+    void drain();
+    [[nodiscard]] Motion motion();
+    [[nodiscard]] Motion next_motion();
     void set_bed(const Grid<double>& bed);
     void find_slopes(std::size_t cell);
     void set_cover(const GroundValues& ground);
@@ -170,6 +186,11 @@ class Solver {
     std::size_t stride_ = 0, origin_ = 0;  ///< origin_: index of the padded grid's south-western cell
     std::vector<float> bed_, slope_x_, slope_y_;
     std::vector<float> depth_, u_, v_, next_depth_, next_u_, next_v_, spare_, next_spare_;
+    std::vector<float> depth_, u_, v_, next_depth_, next_u_, next_v_;
+    /// r_u of the debris in a cell, as it was or would have been at drained_from_: all of it falls alike, so that cells
+    /// at rest need no step. Empty: it is the same everywhere and constant.
+    std::vector<float> pore_pressure_, next_pore_pressure_;
+    double drained_from_ = 0, pore_pressure_left_ = 1;  ///< s; what is left of the pressure of then
     std::vector<float> friction_, inverse_turbulence_, strength_, stem_drag_,
         structure_;  ///< empty: everywhere the same
     struct {

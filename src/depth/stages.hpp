@@ -20,6 +20,7 @@ struct Motion {
     /// Energy over mass, m2/s2, that debris has been given by its fall and by pressure and does not move with: what the
     /// scheme has taken, or below zero, has added. It goes with the mass.
     float* spare;
+    float* pore_pressure = nullptr;  ///< see Solver; null: it is the same everywhere
 };
 /// Per cell; null: everywhere the same.
 struct Cover {
@@ -41,7 +42,9 @@ struct StageData {
     bool second = false;
     float time_step = 0, inverse_cell = 0, gravity = 0;
     float friction = 0, strength = 0, inverse_turbulence = 0, turbulent_thickness = 0, viscosity = 0;
-    float effective_share = 1;  ///< of the normal stress, borne by the grains
+    float effective_share = 1;      ///< of the normal stress, borne by the grains, where pore pressure is not carried
+    float pore_pressure_left = 1;   ///< r_u over what Motion has, in the middle of the step
+    float fresh_pore_pressure = 0;  ///< of what comes in
     Cover cover{};
     float highest_line = 0;            ///< m: no debris is faster than by a fall from there
     const float* structure = nullptr;  ///< by cell, 1: a structure stands there; null: none anywhere

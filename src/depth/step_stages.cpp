@@ -48,10 +48,12 @@ struct Row {
     AxisRow x, y;
     Numbers at_rest, bed_x, bed_y;
     Numbers bed, square, lift, spare;  ///< the last three: see FaceSide, Motion
+    Numbers pore_pressure;             ///< if it is carried
 };
 /// Fluxes of a row of faces, that of energy with what is spare, and what the ground's curvature presses at them.
 struct Faces {
     Numbers mass, normal, across, pressure_before, pressure_after, press, energy;
+    Numbers pore_pressure;  ///< that goes with the mass, if it is carried
 };
 struct Scratch {
     std::array<Row, 2> rows;  ///< of the row and the one before it
@@ -66,14 +68,18 @@ struct Fastest {
     L unknown = L(0);  ///< 0, or NaN if there was one
 };
 
-HWY_INLINE Resistance<L> resistance_at(const StageData& data, std::ptrdiff_t i, const L& depth, const L& stretch) {
+/// `pore_pressure`: of the debris, if it is carried.
+HWY_INLINE Resistance<L> resistance_at(const StageData& data, std::ptrdiff_t i, const L& depth, const L& stretch,
+                                       const L& pore_pressure) {
     const auto known = [&](const float* raster, float elsewhere) HWY_ATTR {
         if (raster == nullptr) return L(elsewhere);
         const L here = L::load(raster + i);
         return select(here == here, here, L(elsewhere));
     };
     Resistance<L> r;
-    r.friction = known(data.cover.friction, data.friction) * L(data.effective_share);
+    const L effective_share = data.from.pore_pressure == nullptr ? L(data.effective_share)
+                                                                 : L(1) - pore_pressure * L(data.pore_pressure_left);
+    r.friction = known(data.cover.friction, data.friction) * effective_share;
     r.strength = known(data.cover.strength, data.strength);
     r.inverse_turbulence = known(data.cover.inverse_turbulence, data.inverse_turbulence);
     if (data.turbulent_thickness > 0) {
@@ -166,7 +172,12 @@ HWY_INLINE void reconstruct(const StageData& data, std::ptrdiff_t i, int cells, 
         keep(y, wall_south, wall_north, gravity * flatness * (one - flatness * bed_y * bed_y), can_flow * out_south,
              can_flow * out_north, row.y, j);
 
-        const Resistance<L> resistance = resistance_at(data, i + j, depth, stretch);
+        L pore_pressure = zero;
+        if (data.from.pore_pressure != nullptr) {
+            pore_pressure = at(data.from.pore_pressure, 0);
+            store(pore_pressure, row.pore_pressure, j);
+        }
+        const Resistance<L> resistance = resistance_at(data, i + j, depth, stretch, pore_pressure);
         const RestBalance<L> balance = rest_balance(rest_slope(x, inverse_cell), rest_slope(y, inverse_cell), bed_x,
                                                     bed_y, square_stretch, gravity, depth, resistance);
         const L held = opaque(select(balance.driving <= balance.resisting, one, zero));
@@ -259,6 +270,46 @@ HWY_INLINE void cross_faces(float gravity, const Row& before, int j, const Row& 
     store((flux.energy + flux.mass * spare) * passes, faces.energy, to);
 }
 
+/// What goes with the mass across faces whose fluxes are known: the pore pressure of where it comes from.
+HWY_INLINE void cross_faces_with_pore_pressure(const Row& before, int j, const Row& after, int k, Faces& faces,
+                                               int to) {
+    const L mass = load(faces.mass, to);
+    store(mass * select(mass > L(0), load(before.pore_pressure, j), load(after.pore_pressure, k)), faces.pore_pressure,
+          to);
+}
+
+/// Pore pressure of debris of `depth` after a stage, with `content` of it times depth: rounding must not take it beyond
+/// the values it is a mean of.
+HWY_INLINE L mixed_pore_pressure(const L& content, const L& depth, const L& own, const L& low, const L& high) {
+    const L mean = smaller(larger(content / larger(depth, L(1e-12F)), low), high);
+    return select(depth > L(1e-12F), mean, own);
+}
+
+/// Pore pressure of a cell after this stage alone.
+HWY_INLINE L pore_pressure_after(const StageData& data, const Scratch& scratch, int r, std::ptrdiff_t i, int j,
+                                 const L& depth, const L& new_depth) {
+    const Row& row = scratch.rows[static_cast<std::size_t>(r & 1)];
+    const Numbers &x = scratch.x.pore_pressure, &south = scratch.y[static_cast<std::size_t>(r & 1)].pore_pressure;
+    const Numbers& north = scratch.y[static_cast<std::size_t>((r + 1) & 1)].pore_pressure;
+    const L dt(data.time_step), per_cell = dt * L(data.inverse_cell), own = load(row.pore_pressure, j);
+    L content = depth * own - per_cell * (load(x, j) - load(x, j - 1) + (load(north, j) - load(south, j)));
+    L low(1e30F), high(0);
+    const auto bound_by = [&](const L& brings, const L& pore_pressure) HWY_ATTR {
+        low = smaller(low, select(brings > L(0), pore_pressure, low));
+        high = larger(high, select(brings > L(0), pore_pressure, high));
+    };
+    for (const std::ptrdiff_t beside : {std::ptrdiff_t{0}, std::ptrdiff_t{-1}, std::ptrdiff_t{1},
+                                        -std::ptrdiff_t{data.stride}, std::ptrdiff_t{data.stride}}) {
+        bound_by(L::load(data.from.depth + i + beside), L::load(data.from.pore_pressure + i + beside));
+    }
+    if (data.inflow.depth != nullptr) {
+        const L comes = L::load(data.inflow.depth + i), fresh(data.fresh_pore_pressure);
+        content = content + dt * comes * fresh;
+        bound_by(comes, fresh);
+    }
+    return mixed_pore_pressure(content, new_depth, own, low, high);
+}
+
 /// Updates lane_count cells at index i, entry j of the row.
 HWY_INLINE void update(const StageData& data, Scratch& scratch, int r, std::ptrdiff_t i, int j, Fastest& fastest) {
     const Row& row = scratch.rows[static_cast<std::size_t>(r & 1)];
@@ -319,10 +370,13 @@ HWY_INLINE void update(const StageData& data, Scratch& scratch, int r, std::ptrd
                                 comes * (fall + lift * (new_depth - depth)));
     }
 
+    const bool carries = data.from.pore_pressure != nullptr;
+    L pore_pressure = carries ? pore_pressure_after(data, scratch, r, i, j, depth, new_depth) : zero;
+
     const L m_up = bed_x * m_x + bed_y * m_y, momentum = sqrt(m_x * m_x + m_y * m_y + m_up * m_up);
     const L normal_force = larger(zero, gravity * depth / (one + tilt) + curvature);
-    const L left =
-        resisted(resistance_at(data, i, new_depth, stretch), gravity, momentum, new_depth, normal_force, stretch, dt);
+    const L left = resisted(resistance_at(data, i, new_depth, stretch, pore_pressure), gravity, momentum, new_depth,
+                            normal_force, stretch, dt);
     energy = energy - (momentum - left) * sqrt(square_speed);
     const L moves = smaller(new_depth - L(dry_depth), left);
     const L to_speed =
@@ -373,6 +427,18 @@ HWY_INLINE void update(const StageData& data, Scratch& scratch, int r, std::ptrd
     }
     spare = select(to_depth <= L(dry_depth), zero, spare / larger(to_depth, L(dry_depth)));
     spare.store(data.to.spare + i);
+    if (carries) {
+        change = change + difference(pore_pressure, load(row.pore_pressure, j));
+        if (data.second) {
+            const L old_depth = L::load(data.to.depth + i), before = L::load(data.to.pore_pressure + i);
+            const L old = select(old_depth > zero, before, pore_pressure);
+            const L content = half * (old_depth * old + new_depth * pore_pressure);
+            pore_pressure = mixed_pore_pressure(content, to_depth, pore_pressure, smaller(old, pore_pressure),
+                                                larger(old, pore_pressure));
+            change = change + difference(pore_pressure, before);
+        }
+        pore_pressure.store(data.to.pore_pressure + i);
+    }
     store(change, scratch.change, j);
     to_depth.store(data.to.depth + i);
     new_u.store(data.to.u + i);
@@ -385,20 +451,25 @@ HWY_INLINE void update(const StageData& data, Scratch& scratch, int r, std::ptrd
     const std::ptrdiff_t first =
         static_cast<std::ptrdiff_t>(segment.tile_row) * tile_edge * data.stride + segment.first_tile * tile_edge;
     const auto row_of = [&](int r) HWY_ATTR -> Row& { return scratch.rows[static_cast<std::size_t>(r & 1)]; };
+    const bool carries = data.from.pore_pressure != nullptr;
     Fastest fastest;
     // Row r of the segment is r + 1 here, so that the row before it is 0.
     for (int r = 0; r < tile_edge + 2; ++r) {
         if (r >= 2) {
             const Row& row = row_of(r - 1);
-            for (int j = 0; j <= width; j += lane_count)
+            for (int j = 0; j <= width; j += lane_count) {
                 cross_faces(data.gravity, row, j, row, j + 1, true, scratch.x, j);
+                if (carries) cross_faces_with_pore_pressure(row, j, row, j + 1, scratch.x, j);
+            }
         }
         reconstruct(data, first + (r - 1) * static_cast<std::ptrdiff_t>(data.stride) - 1, width + 2, row_of(r),
                     scratch.speed[static_cast<std::size_t>(r % 3)]);
         if (r == 0) continue;
         Faces& faces = scratch.y[static_cast<std::size_t>(r & 1)];
-        for (int j = 1; j <= width; j += lane_count)
+        for (int j = 1; j <= width; j += lane_count) {
             cross_faces(data.gravity, row_of(r - 1), j, row_of(r), j, false, faces, j);
+            if (carries) cross_faces_with_pore_pressure(row_of(r - 1), j, row_of(r), j, faces, j);
+        }
         if (r < 2) continue;
         for (int j = 1; j <= width; j += lane_count) {
             const std::ptrdiff_t i = first + (r - 2) * static_cast<std::ptrdiff_t>(data.stride) + (j - 1);

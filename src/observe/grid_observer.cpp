@@ -236,6 +236,20 @@ MapAccumulator::Present GridObserver::present(const depth::Solver& solver) const
     return present;
 }
 
+double GridObserver::volume_faster_than(const depth::Solver& solver, double limit) const {
+    const GridGeometry& g = solver.geometry();
+    double depth = 0;
+    for (int row = 0; row < g.rows; ++row) {
+        for (int column = 0; column < g.columns; ++column) {
+            if (!(solver.depth_at(column, row) > 0)) continue;
+            const double speed = speed_of(solver.u_at(column, row), solver.v_at(column, row),
+                                          solver.slope_x_at(column, row), solver.slope_y_at(column, row));
+            if (speed >= limit) depth += solver.depth_at(column, row);
+        }
+    }
+    return depth * g.cell * g.cell;
+}
+
 TimeSample GridObserver::sample(const depth::Solver& solver, double held, double steps_per_second) const {
     TimeSample s;
     const GridGeometry& g = solver.geometry();
@@ -249,6 +263,7 @@ TimeSample GridObserver::sample(const depth::Solver& solver, double held, double
             const double volume = depth * area;
             (speed < outputs_.deposited_speed ? s.volume_deposited : s.volume_moving) += volume;
             s.kinetic_energy += density_ * volume * speed * speed / 2;
+            s.momentum += density_ * volume * speed;
             s.potential_energy +=
                 density_ * volume * solver.material().gravity * (solver.bed_at(column, row) + depth / 2);
             s.largest_speed = std::max(s.largest_speed, speed);

@@ -43,6 +43,11 @@ class GridObserver {
     /// Depth of releases and inflows by cell, m, to which that of an inflow is to be added.
     [[nodiscard]] Grid<float>& released() { return released_; }
     [[nodiscard]] const TimeSample& latest() const { return timeseries_.back(); }
+    /// The debris as it is now; `held`: as above.
+    [[nodiscard]] TimeSample sample(const depth::Solver& solver, double held, double steps_per_second) const;
+    [[nodiscard]] const std::vector<TimeSample>& timeseries() const { return timeseries_; }
+    /// m3.
+    [[nodiscard]] double volume_faster_than(const depth::Solver& solver, double limit) const;
     /// Debris now, over the part of the grid that contains any.
     [[nodiscard]] MapAccumulator::Present present(const depth::Solver& solver) const;
     /// Debris thinner than this does not count as having reached a cell, m.
@@ -61,7 +66,6 @@ class GridObserver {
     void measure_cells(const depth::Solver& solver);
     void measure_structures(const depth::Solver& solver);
     void read_gauges(const depth::Solver& solver, bool row);
-    [[nodiscard]] TimeSample sample(const depth::Solver& solver, double held, double steps_per_second) const;
     [[nodiscard]] FrontRecord front_record() const;
     [[nodiscard]] HazardMaps maps(const depth::Solver& solver) const;
 

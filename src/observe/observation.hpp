@@ -120,6 +120,7 @@ struct TimeSample {
     double volume_left = 0;
     double kinetic_energy = 0;    ///< J
     double potential_energy = 0;  ///< J, above the lowest terrain
+    double momentum = 0;          ///< N s, mass times speed of all debris
     double largest_speed = 0;     ///< m/s
     double mean_compression = 0, max_compression = 0, squeezed_share = 0;
     double time_step = 0;         ///< s

@@ -31,6 +31,7 @@ TimeSample make_sample(const sim::Model& model, const Debris& debris, double dep
     sample.volume_deposited = totals.deposited * model.particle_volume();
     sample.volume_left = state.outflow * model.particle_volume();
     sample.kinetic_energy = 0.5 * model.particle_mass() * totals.speed_squared;
+    sample.momentum = model.particle_mass() * totals.speed;
     sample.potential_energy = model.particle_mass() * model.gravity * totals.height;
     sample.largest_speed = state.max_speed;
     sample.mean_compression = state.mean_compression;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cmath>
 #include <cstdint>
 
 #include "core/geometry.hpp"
@@ -14,14 +15,16 @@ namespace talus::observe {
 /// Counts and energies over the particles, as far as they are summed for every row.
 struct ParticleSums {
     std::uint32_t held = 0, moving = 0, deposited = 0;
-    double speed_squared = 0;  ///< sum, m2/s2
-    double height = 0;  ///< sum over the particles, m above the lowest terrain; both weighed by density over rest
-                        ///< density
+    // Sums over the particles, weighed by density over rest density.
+    double speed_squared = 0;  ///< m2/s2
+    double speed = 0;          ///< m/s
+    double height = 0;         ///< m above the lowest terrain
 
     /// `held` and `weight` of the particle.
     TALUS_DEVICE void add(const LocalPoint& velocity, float z, bool is_held, double weight, double deposited_speed) {
         const double square = dot(velocity, velocity);
         speed_squared += weight * square;
+        speed += weight * std::sqrt(square);
         height += weight * static_cast<double>(z);
         if (is_held) {
             ++held;
@@ -32,8 +35,8 @@ struct ParticleSums {
         }
     }
     friend TALUS_DEVICE ParticleSums operator+(const ParticleSums& a, const ParticleSums& b) {
-        return {a.held + b.held, a.moving + b.moving, a.deposited + b.deposited, a.speed_squared + b.speed_squared,
-                a.height + b.height};
+        return {a.held + b.held,   a.moving + b.moving, a.deposited + b.deposited, a.speed_squared + b.speed_squared,
+                a.speed + b.speed, a.height + b.height};
     }
 };
 

@@ -143,8 +143,14 @@ Section declare_solver() {
     s.key("stop_moving_share", "", &SolverSpec::stop_moving_share, from_to_below(0, 1),
           "Ends the run when less of the debris than this (but five particles at least) is faster than "
           "outputs.deposited_speed_mps and no more than a ten-thousandth ten times as fast; 0 never does.");
+    s.key("stop_energy_share", "", &SolverSpec::stop_energy_share, from_to_below(0, 1),
+          "Ends the run when the kinetic energy of the debris is below this share of its peak, as AvaFrame's kinEnergy "
+          "does with 0.01, and nothing is still to start or to come in; 0 never does. Debris may still run, fall and "
+          "strike then.");
+    s.key("stop_momentum_share", "", &SolverSpec::stop_momentum_share, from_to_below(0, 1),
+          "The same for the momentum, mass times speed over all debris, as RAMMS does with 0.05; 0 never does.");
     s.key("stop_duration_s", "s", &SolverSpec::stop_duration, between(0, 1e7),
-          "For how long no more than that may move.");
+          "For how long no more than that may move, or the energy or momentum must be below its share.");
     s.key(
         "rest_duration_s", "s", &SolverSpec::rest_duration, between(0, 1e7),
         "Debris that has hardly moved (a hundredth of a particle's free-fall speed) for so long is at rest: it presses "

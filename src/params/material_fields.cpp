@@ -33,7 +33,9 @@ void declare_resistance(Declaration<MaterialSpec>& s) {
         .live_as()
         .needs(stress());
     s.optional_key("pore_pressure_decay_time_s", "s", &MaterialSpec::pore_pressure_decay_time, between(0.001, 1e9),
-                   "pore pressure stays", "Time since a body's start in which its pore-pressure ratio falls to 1/e.");
+                   "pore pressure stays",
+                   "Time in which the pore-pressure ratio falls to 1/e, from when debris starts to move, comes in or "
+                   "is entrained.");
     s.key("rest_density_kgpm3", "kg/m3", &MaterialSpec::rest_density, between(1, 30000), "Bulk density of the debris.")
         .assumes("Bulk density")
         .live_as();

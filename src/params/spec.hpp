@@ -92,10 +92,11 @@ struct InflowSpec {
 
 /// A row of a hydrograph; between rows all change linearly.
 struct InflowSample {
-    double time = 0;       ///< s
-    double discharge = 0;  ///< m3/s of bulk debris at its own density
-    double velocity = 0;   ///< m/s, along the ground
-    double density = 0;    ///< kg/m3; 0 in every row: that of the material
+    double time = 0;                  ///< s
+    double discharge = 0;             ///< m3/s of bulk debris at its own density
+    double velocity = 0;              ///< m/s, along the ground
+    double density = 0;               ///< kg/m3; 0 in every row: that of the material
+    double pore_pressure_ratio = -1;  ///< r_u, of a zoom; negative in every row: that of the material
     bool operator==(const InflowSample&) const = default;
 };
 
@@ -238,6 +239,8 @@ struct SolverSpec {
     double depenetration_speed = 0.5;    ///< m/s, maximum speed at which pair friction removes compression
     double end_time = 120;               ///< s
     double stop_moving_share = 0.001;    ///< the run ends when a smaller share of the debris is moving; 0: never
+    double stop_energy_share = 0;        ///< or its kinetic energy is below this share of its peak; 0: never
+    double stop_momentum_share = 0;      ///< or its momentum; 0: never
     double stop_duration = 3;            ///< s, for this duration
     double rest_duration = 0.5;          ///< s, debris that has hardly moved for this long falls asleep; 0: never
     double compression_limit = 0.5;      ///< mean of max(0, density/rest density - 1) above which the run is a fault

@@ -88,7 +88,8 @@ std::string time_table(const observe::Observation& observation, std::string_view
     Csv csv(
         "time_s,front_chainage_m,volume_entrained_m3,volume_held_m3,volume_moving_m3,volume_deposited_m3,volume_left_"
         "m3,"
-        "volume_balance_m3,kinetic_energy_J,potential_energy_J,largest_speed_mps,mean_compression,max_compression,"
+        "volume_balance_m3,kinetic_energy_J,potential_energy_J,momentum_Ns,largest_speed_mps,mean_compression,max_"
+        "compression,"
         "squeezed_share,"
         "time_step_s,steps_per_second",
         changed);
@@ -96,8 +97,8 @@ std::string time_table(const observe::Observation& observation, std::string_view
         const double balance = s.volume_released + s.volume_entrained -
                                (s.volume_held + s.volume_moving + s.volume_deposited + s.volume_left);
         csv.row({s.time, s.front_chainage, s.volume_entrained, s.volume_held, s.volume_moving, s.volume_deposited,
-                 s.volume_left, balance, s.kinetic_energy, s.potential_energy, s.largest_speed, s.mean_compression,
-                 s.max_compression, s.squeezed_share, s.time_step, s.steps_per_second});
+                 s.volume_left, balance, s.kinetic_energy, s.potential_energy, s.momentum, s.largest_speed,
+                 s.mean_compression, s.max_compression, s.squeezed_share, s.time_step, s.steps_per_second});
     }
     return csv.text();
 }

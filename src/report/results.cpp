@@ -58,6 +58,13 @@ MassBalance mass_balance(const observe::Observation& observation) {
     return m;
 }
 
+std::string moving_text(const run::RunResult& result, double deposited_speed) {
+    const run::StillMoving moving = result.still_moving();
+    if (!(moving.volume > 0)) return fmt::format("nothing faster than {} m/s", plain(deposited_speed));
+    return fmt::format("{} m³ ({} % of the debris), at up to {} m/s", significant(moving.volume, 3),
+                       significant(100 * moving.share, 3), significant(moving.greatest_speed, 2));
+}
+
 }  // namespace
 
 std::string place(const scene::Scene& scene, const PlanPoint& at) {
@@ -73,6 +80,14 @@ std::string plural(std::size_t n, std::string_view word) {
     return fmt::format("{} {}{}", n, word, n == 1 ? "" : "s");
 }
 
+Json still_moving(const run::RunResult& result) {
+    const run::StillMoving moving = result.still_moving();
+    return {{"volume_m3", moving.volume},
+            {"share_percent", 100 * moving.share},
+            {"greatest_speed_mps", moving.greatest_speed},
+            {"slow_since_s", number_or_null<Json>(moving.slow_since)}};
+}
+
 Json status(const run::RunResult& result) {
     const bool fault = result.status == run::RunStatus::fault, complete = result.status == run::RunStatus::complete;
     return {{"name", complete ? "complete"
@@ -81,7 +96,8 @@ Json status(const run::RunResult& result) {
             {"partial", !complete},
             {"fault", fault},
             {"stop_reason", result.stop_reason},
-            {"simulated_time_s", result.simulated_time}};
+            {"simulated_time_s", result.simulated_time},
+            {"still_moving", still_moving(result)}};
 }
 
 Json verdict(const run::NumericalVerdict& said) {
@@ -222,6 +238,7 @@ Json quality(const scene::Scene& scene, const run::RunResult& result, const run:
     const observe::Compression& c = o.compression;
     Json all = {
         fact("Status", result.stop_reason.empty() ? state : state + ("; " + result.stop_reason)),
+        fact("Still moving", moving_text(result, scene.spec.outputs.deposited_speed)),
         fact("Simulated time",
              fmt::format("{} s in {} s of wall time, {} of {} to {} ms", fixed(result.simulated_time, 1),
                          fixed(result.wall_time, 1), plural(result.steps, "step"),

@@ -24,6 +24,8 @@ constexpr int results_version = 2;
 /// What `[report]` says: client, reference, ...; null where it says nothing.
 [[nodiscard]] Json title_block(const params::ReportSpec& report);
 [[nodiscard]] Json status(const run::RunResult& result);
+/// What was not at rest at the end: volume, share, greatest speed.
+[[nodiscard]] Json still_moving(const run::RunResult& result);
 /// Compression of the debris, and what to change if it was too high; null in the depth-averaged model.
 [[nodiscard]] Json compression(const scene::Scene& scene, const run::RunResult& result);
 [[nodiscard]] Json key_figures(const scene::Scene& scene, const run::RunResult& result);

@@ -45,10 +45,12 @@ std::vector<params::InflowSample> hydrograph_of(const std::vector<params::Inflow
         before += flow[k].discharge * BoundaryFlow::interval;
         if (rows.empty() && flow[k].discharge <= 0) continue;
         if (rows.empty())
-            rows.push_back({std::max(0.0, flow[k].time - BoundaryFlow::interval), 0, flow[k].velocity, 0});
+            rows.push_back({std::max(0.0, flow[k].time - BoundaryFlow::interval), 0, flow[k].velocity, 0,
+                            flow[k].pore_pressure_ratio});
         rows.push_back(flow[k]);
     }
-    rows.push_back({rows.back().time + BoundaryFlow::interval, 0, rows.back().velocity, 0});
+    rows.push_back(
+        {rows.back().time + BoundaryFlow::interval, 0, rows.back().velocity, 0, rows.back().pore_pressure_ratio});
     terrain::Inflow whole;
     whole.hydrograph = rows;
     const double scale = volume / whole.volume();
@@ -57,6 +59,14 @@ std::vector<params::InflowSample> hydrograph_of(const std::vector<params::Inflow
 }
 
 }  // namespace
+
+BoundaryFlow::Interval& BoundaryFlow::Interval::operator+=(const Interval& more) {
+    volume += more.volume;
+    momentum_x += more.momentum_x;
+    momentum_y += more.momentum_y;
+    pore_pressure += more.pore_pressure;
+    return *this;
+}
 
 BoundaryFlow::BoundaryFlow(const depth::Solver& solver, const Polygon& area) : cells_(solver.geometry()) {
     const GridGeometry& cells = cells_;
@@ -137,6 +147,8 @@ void BoundaryFlow::record(const depth::Solver& solver) {
                 now.volume += volume;
                 now.momentum_x += volume * u;
                 now.momentum_y += volume * v;
+                now.pore_pressure +=
+                    volume * static_cast<double>(solver.pore_pressure_ratio_at(cell->column, cell->row));
                 const double sx = solver.slope_x_at(cell->column, cell->row);
                 const double sy = solver.slope_y_at(cell->column, cell->row);
                 thickness_ = std::max(thickness_, depth / std::sqrt(1 + sx * sx + sy * sy));
@@ -144,6 +156,7 @@ void BoundaryFlow::record(const depth::Solver& solver) {
         }
     }
     gained_ = volume_inside(solver);
+    carries_pore_pressure_ = solver.carries_pore_pressure();
 }
 
 void BoundaryFlow::bring(const PlanPoint& place, double time, double volume, double u, double v) {
@@ -221,11 +234,7 @@ BoundaryFlow::Piece BoundaryFlow::joined(std::size_t from, std::size_t to) const
         piece.slope_x += next.slope_x / count;
         piece.slope_y += next.slope_y / count;
         if (piece.intervals.size() < next.intervals.size()) piece.intervals.resize(next.intervals.size());
-        for (std::size_t i = 0; i < next.intervals.size(); ++i) {
-            piece.intervals[i].volume += next.intervals[i].volume;
-            piece.intervals[i].momentum_x += next.intervals[i].momentum_x;
-            piece.intervals[i].momentum_y += next.intervals[i].momentum_y;
-        }
+        for (std::size_t i = 0; i < next.intervals.size(); ++i) piece.intervals[i] += next.intervals[i];
     }
     return piece;
 }
@@ -238,11 +247,7 @@ std::vector<terrain::Inflow> BoundaryFlow::inflows(double particle_spacing) cons
     long brought = 0;
     for (const Piece& piece : merged(spacings_of_piece * particle_spacing)) {
         Interval all;
-        for (const Interval& one : piece.intervals) {
-            all.volume += one.volume;
-            all.momentum_x += one.momentum_x;
-            all.momentum_y += one.momentum_y;
-        }
+        for (const Interval& one : piece.intervals) all += one;
         came += all.volume * scale;
         const long count = std::lround(came / particle) - brought;
         const double momentum = std::hypot(all.momentum_x, all.momentum_y);
@@ -251,12 +256,13 @@ std::vector<terrain::Inflow> BoundaryFlow::inflows(double particle_spacing) cons
         const PlanPoint towards{all.momentum_x / momentum, all.momentum_y / momentum};
         const double rise = towards.x * piece.slope_x + towards.y * piece.slope_y;
         std::vector<params::InflowSample> flow;
-        double velocity = 0;
+        double velocity = 0, ratio = all.pore_pressure / all.volume;
         for (const Interval& one : piece.intervals) {
             const double along = one.momentum_x * towards.x + one.momentum_y * towards.y;
             if (one.volume > 0) velocity = std::max(0.0, along / one.volume) * std::sqrt(1 + rise * rise);
+            if (one.volume > 0) ratio = one.pore_pressure / one.volume;
             flow.push_back({(static_cast<double>(flow.size()) + 0.5) * BoundaryFlow::interval,
-                            one.volume / BoundaryFlow::interval, velocity, 0});
+                            one.volume / BoundaryFlow::interval, velocity, 0, carries_pore_pressure_ ? ratio : -1});
         }
         terrain::Inflow inflow;
         inflow.name = fmt::format("boundary of the zoom {}", inflows.size() + 1);

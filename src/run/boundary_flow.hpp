@@ -46,6 +46,9 @@ class BoundaryFlow {
   private:
     struct Interval {
         double volume = 0, momentum_x = 0, momentum_y = 0;  ///< m3, m4/s
+        double pore_pressure = 0;                           ///< m3, volume times r_u
+
+        Interval& operator+=(const Interval& more);
     };
     struct Piece {
         PlanPoint centre, along, inward;  ///< `along`, `inward`: unit vectors
@@ -62,6 +65,7 @@ class BoundaryFlow {
     std::vector<Piece> pieces_;
     std::vector<std::pair<std::size_t, float>> inside_;  ///< cells, and how much of each
     double in_ = 0, out_ = 0, gained_ = 0, thickness_ = 0;
+    bool carries_pore_pressure_ = false;
 };
 
 }  // namespace talus::run

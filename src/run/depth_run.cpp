@@ -41,6 +41,7 @@ class GridRun {
           friction_inside_(solver_, inside == Inside::as_particles ? internal_friction(scene.spec.material) : 0),
           bed_(grid_bed(scene, ground_)),
           observer_(solver_, scene.flow_path, scene.spec.outputs, ground_.structures),
+          stop_rule_(scene.spec.solver),
           clock_(scene.spec.solver) {
         for (const terrain::Release& release : scene.releases) held_ += release.volume;
         release_due();
@@ -79,10 +80,9 @@ class GridRun {
             fault_ = record_grid_fault(ground_.bed, good_, solver_, stepped.error().message);
             stop_reason_ = stepped.error().message + fault_->sentence;
         } else if (solver_.time() >= spec.end_time - 1e-9) {
-            stop_reason_ = fmt::format("reached solver.end_time_s = {:.4g}", spec.end_time);
-        } else if (at_rest()) {
-            stop_reason_ = fmt::format("debris came to rest (less than {:.3g} % of it moving for {:.3g} s)",
-                                       100 * spec.stop_moving_share, spec.stop_duration);
+            stop_reason_ = with_what_moved(end_time_reason(spec), moving_now());
+        } else {
+            judge();
         }
         return stop_reason_.empty();
     }
@@ -146,10 +146,10 @@ class GridRun {
             if (solver_.time() < release.spec.start_time - 1e-9) break;
             const double before = solver_.volume();
             const Grid<float> depth = grid_release(scene_, release, ground_);
-            solver_.add(depth);
+            solver_.add(depth, release.spec.pore_pressure_ratio);
             held_ = std::max(0.0, held_ - release.volume);
             observer_.note_release(solver_, depth, solver_.volume() - before);
-            moved_until_ = solver_.time();
+            stop_rule_.stir(solver_.time());
         }
     }
     /// The releases by their start.
@@ -161,17 +161,28 @@ class GridRun {
         });
         return order_;
     }
-    /// As RestDetector, for volumes, at the samples of the time series.
-    bool at_rest() {
+    [[nodiscard]] StillMoving moving_now() const {
+        return still_moving(observer_.timeseries(), observer_.sample(solver_, held_, 0));
+    }
+    /// Whether it is over, at the samples of the time series.
+    void judge() {
         const params::SolverSpec& spec = scene_.spec.solver;
         const observe::TimeSample& now = observer_.latest();
-        const double debris = now.volume_moving + now.volume_deposited;
+        if (now.time <= judged_) return;
+        judged_ = now.time;
         const bool waits = inflows_.to_come() || (released_ < scene_.releases.size() &&
                                                   std::isfinite(scene_.releases[order()[released_]].spec.start_time));
-        if (waits || spec.stop_moving_share <= 0 || now.volume_moving >= spec.stop_moving_share * debris) {
-            moved_until_ = now.time;
+        MovingDebris debris{now.volume_moving + now.volume_deposited, now.volume_moving};
+        if (!(debris.debris > 0) && !waits) {
+            stop_reason_ = now.volume_left > 0 ? all_left_reason : no_debris_reason;
+            return;
         }
-        return now.time - moved_until_ >= spec.stop_duration;
+        if (debris.moving < spec.stop_moving_share * debris.debris) {  // else that alone says that it goes on
+            debris.fast = observer_.volume_faster_than(
+                solver_, double{sim::MotionCount::fast_ratio} * scene_.spec.outputs.deposited_speed);
+        }
+        if (!stop_rule_.over(now.time, debris, now, waits)) return;
+        stop_reason_ = stop_rule_.at_rest() ? stop_rule_.reason() : with_what_moved(stop_rule_.reason(), moving_now());
     }
 
     [[nodiscard]] Outlook outlook() {
@@ -197,13 +208,14 @@ class GridRun {
     observe::GridObserver observer_;
     std::vector<std::size_t> order_;
     std::size_t released_ = 0;
-    double held_ = 0, moved_until_ = 0;
+    double held_ = 0, judged_ = 0;  ///< judged_: s, the sample by which it was not over
     double wall_time_ = 0, smallest_ = 1e9, largest_ = 0;
     /// Of a few steps ago, after the last release: a fault is explained with it.
     GridState good_;
     std::size_t good_released_ = 0;
     std::optional<FaultRecord> fault_;
     std::string stop_reason_;
+    StopRule stop_rule_;
     RunClock clock_;
     std::optional<sim::Model> sliding_;  ///< what the clock's blocks slide by; made when it is asked
     sim::Ground sliding_ground_;

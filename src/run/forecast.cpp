@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <limits>
 #include <unordered_map>
 
 #include "run/stop_rule.hpp"
@@ -216,8 +217,22 @@ double RunClock::straggling(const Outlook& now, double time) const {
     return std::pow(std::max(now.coasting, 0.1), 1 - weight) * std::pow(by_decay, weight);
 }
 
+/// s, until energy or momentum ends the run, as the energy fell over the latest part of it; infinity: by neither.
+double RunClock::declining(const Outlook& now, double time) const {
+    // Of the same debris momentum falls as the root of the energy.
+    const double share = std::max(solver_.stop_energy_share, std::pow(solver_.stop_momentum_share, 2));
+    const Mark before = latest_mark([&](const Mark& mark) { return mark.time <= (1 - decay_window) * time; });
+    if (!(share > 0) || now.wait > 0 || !(now.energy > 0) || before.energy <= now.energy) {
+        return std::numeric_limits<double>::infinity();
+    }
+    double peak = 0;
+    for (const Mark& mark : marks_) peak = std::max(peak, mark.energy);
+    const double decay = (time - before.time) / std::log(before.energy / now.energy);
+    return decay * std::max(0.0, std::log(now.energy / (share * peak))) + solver_.stop_duration;
+}
+
 RunClock::Course RunClock::course_after(const Outlook& now, double time) const {
-    const double most = std::max(0.0, solver_.end_time - time);
+    const double most = std::min(std::max(0.0, solver_.end_time - time), declining(now, time));
     if (solver_.stop_moving_share <= 0) return {most, 0};
     Course course;
     const bool speeds_up =

@@ -43,7 +43,8 @@ struct Outlook {
 /// Wall time left of a run. Its end is that of the stop rule, or solver.end_time. While all debris moves, it coasts to
 /// a stop as blocks do that slide alone; where some of these stop much later than others, the ground holds debris up,
 /// and it straggles for a while after that. Once a part has come to rest, the rest of it straggles, stopped and pushed
-/// by what lies there, and the moving share falls about exponentially: the less moves, the more its trend counts. Wall
+/// by what lies there, and the moving share falls about exponentially: the less moves, the more its trend counts. Where
+/// energy or momentum ends the run, the trend of the energy may end it sooner. Wall
 /// time starts from the pace of the latest steps, and follows the time step, which is longest at rest, and the debris
 /// that is awake.
 class RunClock {
@@ -69,6 +70,7 @@ class RunClock {
     [[nodiscard]] Mark latest_mark(const Accepts& accepts) const;
     [[nodiscard]] Course course_after(const Outlook& now, double time) const;
     [[nodiscard]] double straggling(const Outlook& now, double time) const;
+    [[nodiscard]] double declining(const Outlook& now, double time) const;
     [[nodiscard]] double wall_time_of(const Course& course, double wall_time, double time) const;
 
     params::SolverSpec solver_;

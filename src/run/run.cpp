@@ -48,14 +48,14 @@ Run::Run(RunStart start)
       observer_(model(), ground(), state(), start.flow_path, start.outputs,
                 start.outputs.map_cell.value_or(
                     terrain::default_map_cell(ground().terrain.cell(), model().particle_spacing))),
-      rest_(model().solver),
+      stop_rule_(model().solver),
       outputs_(start.outputs),
       followed_corridor_width_(start.followed_corridor_width),
       endless_(start.endless),
       smallest_time_step_(std::numeric_limits<double>::infinity()) {
     observer_.watch(start.gauges);
     observer_.expect(summary().seeded + simulation_.inflow().remaining());
-    if (no_debris()) stop(RunPhase::at_rest, "there is no debris");
+    if (no_debris()) stop(RunPhase::at_rest, no_debris_reason);
 }
 
 void Run::stop(RunPhase phase, std::string why) {
@@ -76,11 +76,15 @@ bool Run::advance() {
     return phase_ != RunPhase::fault;
 }
 
+StillMoving Run::moving_now() const {
+    return still_moving(observer_.timeseries(), observer_.sample(model(), state()));
+}
+
 bool Run::over() {
     if (reached_end_time(model().solver, summary())) {
-        stop(RunPhase::ended, end_time_reason(model(), summary(), simulation_.motion(outputs_.deposited_speed)));
+        stop(RunPhase::ended, with_what_moved(end_time_reason(model().solver), moving_now()));
     } else if (no_debris()) {
-        stop(RunPhase::at_rest, no_debris_reason);
+        stop(RunPhase::at_rest, all_left_reason);
     }
     return phase_ != RunPhase::ready;
 }
@@ -96,10 +100,12 @@ void Run::take_step() {
         return stop(RunPhase::fault, stepped.error().message);
     }
     if (endless_) return;
-    if (!observer_.failed_buildings().empty()) rest_.stir(summary().time);
+    if (!observer_.failed_buildings().empty()) stop_rule_.stir(summary().time);
     const bool waiting = still_waiting(model(), summary()) || inflow_to_come();
-    if (rest_.at_rest(summary(), simulation_.motion(outputs_.deposited_speed), waiting)) {
-        stop(RunPhase::at_rest, rest_.reason());
+    const MovingDebris now = moving_particles(summary(), simulation_.motion(outputs_.deposited_speed));
+    if (stop_rule_.over(summary().time, now, observer_.latest(), waiting)) {
+        stop(RunPhase::at_rest,
+             stop_rule_.at_rest() ? stop_rule_.reason() : with_what_moved(stop_rule_.reason(), moving_now()));
     } else {
         (void)over();
     }
@@ -111,14 +117,14 @@ void Run::change(const std::function<std::uint32_t(sim::Model&, sim::Ground&, si
         [&](sim::Model& model, sim::Ground& ground, sim::State& state) { first_new_id = edit(model, ground, state); });
     observer_.follow(model(), ground(), state(), first_new_id);
     simulation_.keep();
-    rest_.stir(summary().time);
+    stop_rule_.stir(summary().time);
     if (phase_ == RunPhase::at_rest) stop(RunPhase::ready, "");
 }
 
 void Run::follow_gauge(std::size_t inflow, const std::vector<params::InflowSample>& hydrograph) {
     threads_.execute([&] { simulation_.follow_gauge(inflow, hydrograph); });
     observer_.expect(summary().seeded + simulation_.inflow().remaining());
-    rest_.stir(summary().time);
+    stop_rule_.stir(summary().time);
 }
 
 RunResult Run::result(const std::string& unfinished) const {

@@ -82,6 +82,7 @@ class Run {
 
   private:
     [[nodiscard]] bool over();
+    [[nodiscard]] StillMoving moving_now() const;
     void take_step();
     void stop(RunPhase phase, std::string why);
     [[nodiscard]] bool inflow_to_come() const {
@@ -92,7 +93,7 @@ class Run {
     Threads threads_;
     sim::Simulation simulation_;
     observe::Observer observer_;
-    RestDetector rest_;
+    StopRule stop_rule_;
     params::OutputSpec outputs_;
     double followed_corridor_width_;
     bool endless_;

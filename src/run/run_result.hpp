@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "observe/observation.hpp"
 #include "run/fault_record.hpp"
@@ -19,6 +20,20 @@ enum class RunPhase {
 };
 
 enum class RunStatus { complete, interrupted, fault };
+
+/// What was not at rest at the end of a run: faster than outputs.deposited_speed.
+struct StillMoving {
+    double volume = 0;          ///< m3
+    double share = 0;           ///< of the debris on the terrain that was released
+    double greatest_speed = 0;  ///< m/s
+    /// s, since when the kinetic energy had been below a hundredth of its peak, where other programs end; NaN: it was
+    /// not.
+    double slow_since = observe::never;
+};
+[[nodiscard]] StillMoving still_moving(const std::vector<observe::TimeSample>& timeseries,
+                                       const observe::TimeSample& end);
+/// A reason for which a run ended, and what still moved: "reached ... with 12.6 m3 still moving (...)".
+[[nodiscard]] std::string with_what_moved(std::string reason, const StillMoving& moving);
 
 struct RunResult {
     RunStatus status = RunStatus::complete;
@@ -44,6 +59,10 @@ struct RunResult {
 
     std::optional<ZoomRecord> zoom;  ///< particles were run in one area only: all results are of that
 
+    [[nodiscard]] StillMoving still_moving() const {
+        const auto& rows = observation.timeseries;
+        return rows.empty() ? StillMoving{} : run::still_moving(rows, rows.back());
+    }
     /// Whether a place lies in what was computed.
     [[nodiscard]] bool covers(const PlanPoint& at) const { return !zoom || contains(zoom->area, at); }
     /// That, in a word.

@@ -8,25 +8,69 @@
 namespace talus::run {
 namespace {
 
-/// So few particles form no front (front_particle_count), however few there are in total.
+/// So few particles form no front (front_particle_count).
 constexpr std::uint32_t fewest = 5;
 /// Share of the debris that may still be fast: one particle in ten thousand.
 constexpr double fast_share = 1e-4;
 
 }  // namespace
 
-bool RestDetector::at_rest(const sim::StateSummary& state, const sim::Motion& motion, bool waiting) {
-    const double debris = state.count;
-    const double enough = std::clamp(share_ * debris, std::min<double>(fewest, debris), debris);
-    if (share_ <= 0 || waiting || motion.moving >= enough || motion.fast > fast_share * debris) {
-        quiet_since_ = state.time;
+MovingDebris moving_particles(const sim::StateSummary& state, const sim::Motion& motion) {
+    return {static_cast<double>(state.count), static_cast<double>(motion.moving), static_cast<double>(motion.fast),
+            static_cast<double>(fewest)};
+}
+
+bool RestDetector::at_rest(double time, const MovingDebris& now, bool waiting) {
+    const double enough = std::clamp(share_ * now.debris, std::min(now.too_little, now.debris), now.debris);
+    const bool moves = now.debris > 0 && (now.moving >= enough || now.fast > fast_share * now.debris);
+    if (share_ <= 0 || waiting || moves) {
+        quiet_since_ = time;
         return false;
     }
-    return state.time - quiet_since_ >= duration_;
+    return time - quiet_since_ >= duration_;
 }
 
 std::string RestDetector::reason() const {
     return fmt::format("debris came to rest (less than {:.3g} % of it moving for {:.3g} s)", 100 * share_, duration_);
+}
+
+bool DeclineDetector::declined(double time, double value, bool waiting) {
+    peak_ = waiting ? value : std::max(peak_, value);
+    if (share_ <= 0 || waiting || !(peak_ > 0) || value >= share_ * peak_) {
+        low_since_ = time;
+        return false;
+    }
+    return time - low_since_ >= duration_;
+}
+
+void DeclineDetector::stir(double time) {
+    low_since_ = time;
+    peak_ = 0;
+}
+
+std::string DeclineDetector::reason() const {
+    return fmt::format("{} fell below {:.3g} % of its peak (for {:.3g} s)", what_, 100 * share_, duration_);
+}
+
+StopRule::StopRule(const params::SolverSpec& solver)
+    : rest_(solver),
+      energy_("kinetic energy", solver.stop_energy_share, solver.stop_duration),
+      momentum_("momentum", solver.stop_momentum_share, solver.stop_duration) {}
+
+bool StopRule::over(double time, const MovingDebris& now, const observe::TimeSample& latest, bool waiting) {
+    // All of them see every step.
+    at_rest_ = rest_.at_rest(time, now, waiting);
+    const bool slow = energy_.declined(latest.time, latest.kinetic_energy, waiting);
+    const bool weak = momentum_.declined(latest.time, latest.momentum, waiting);
+    if (!(at_rest_ || slow || weak)) return false;
+    reason_ = at_rest_ ? rest_.reason() : slow ? energy_.reason() : momentum_.reason();
+    return true;
+}
+
+void StopRule::stir(double time) {
+    rest_.stir(time);
+    energy_.stir(time);
+    momentum_.stir(time);
 }
 
 bool still_waiting(const sim::Model& model, const sim::StateSummary& state) {
@@ -35,12 +79,8 @@ bool still_waiting(const sim::Model& model, const sim::StateSummary& state) {
     });
 }
 
-std::string end_time_reason(const sim::Model& model, const sim::StateSummary& state, const sim::Motion& motion) {
-    std::string reached = fmt::format("reached solver.end_time_s = {:.4g}", model.solver.end_time);
-    const std::uint32_t moving = motion.moving;
-    if (moving == 0) return reached;
-    return fmt::format("{} with {:.3g} m3 still moving ({:.3g} % of the debris)", reached,
-                       moving * model.particle_volume(), 100.0 * moving / state.count);
+std::string end_time_reason(const params::SolverSpec& solver) {
+    return fmt::format("reached solver.end_time_s = {:.4g}", solver.end_time);
 }
 
 }  // namespace talus::run

@@ -139,6 +139,11 @@ Result<ZoomedScene> zoom_in(const scene::Scene& scene, const RunOptions& options
     particles.spec.solver.particle_spacing = *spacing;
     particles.spec.solver.target_layers.reset();
     particles.spec.solver.target_particle_count.reset();
+    // Inflows bring the pore pressure of their debris, where it is not that of the material all the time.
+    for (const terrain::Release& release : particles.releases) {
+        double& ratio = particles.spec.material.pore_pressure_ratio;
+        ratio = std::max(ratio, release.spec.pore_pressure_ratio.value_or(0));
+    }
     particles.releases.clear();
     particles.inflows = flow->inflows(*spacing);
     if (particles.inflows.empty()) {

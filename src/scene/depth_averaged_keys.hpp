@@ -15,7 +15,7 @@ enum class KeyUse {
 struct DepthAveragedKey {
     std::string_view key;  ///< "solver.kernel"; "terrain.*": all keys of a section
     KeyUse use;
-    std::string_view why;  ///< of a refusal: "has one pore pressure for all debris, that of the material"
+    std::string_view why;  ///< of a refusal: "has no nets"
 };
 
 /// All keys of the schema, each once.

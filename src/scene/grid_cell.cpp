@@ -44,11 +44,6 @@ double grid_cell(const Scene& scene) {
 }
 
 std::optional<Lacking> depth_averaged_lacks(const Scene& scene) {
-    for (std::size_t k = 0; k < scene.releases.size(); ++k) {
-        if (!scene.releases[k].spec.pore_pressure_ratio) continue;
-        return Lacking{fmt::format("release[{}].pore_pressure_ratio", k),
-                       std::string(depth_averaged_key("release.pore_pressure_ratio")->why)};
-    }
     std::size_t barriers = 0;
     for (const terrain::Building& building : scene.buildings) {
         const std::string section = building.barrier ? fmt::format("barrier[{}]", barriers++) : "buildings";

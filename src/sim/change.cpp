@@ -51,6 +51,16 @@ void set_density(State& state, std::uint32_t particle, double density) {
     state.density_of_id[id] = static_cast<float>(density);
 }
 
+void set_entry(const Model& model, State& state, std::uint32_t particle, double time, double pore_pressure_ratio) {
+    if (!(model.pore_pressure_decay_time > 0) && pore_pressure_ratio < 0) return;
+    const std::uint32_t id = state.id[particle];
+    if (state.entry_of_id.size() <= id) {
+        state.entry_of_id.reserve(state.id.size());
+        state.entry_of_id.resize(std::size_t{id} + 1);
+    }
+    state.entry_of_id[id] = {static_cast<float>(time), static_cast<float>(pore_pressure_ratio)};
+}
+
 void remove_particles(State& state, std::uint32_t first, std::uint32_t last) {
     state.removed += state.remove_if([&](std::uint32_t i) { return state.id[i] >= first && state.id[i] < last; },
                                      [](std::uint32_t, std::uint32_t) {});

@@ -20,6 +20,9 @@ std::uint32_t add_particle(State& state, const LocalPoint& position, const Local
 /// Gives a particle a density of its own, kg/m3; see density_of().
 void set_density(State& state, std::uint32_t particle, double density);
 
+/// Says when a particle came in, s, and with which r_u (negative: the material's), if its pore pressure depends on it.
+void set_entry(const Model& model, State& state, std::uint32_t particle, double time, double pore_pressure_ratio = -1);
+
 /// Removes the particles with ids [first, last); those that left the terrain remain counted as outflow.
 void remove_particles(State& state, std::uint32_t first, std::uint32_t last);
 

@@ -20,6 +20,10 @@ struct Motion {
 /// The motion of one particle.
 class MotionCount {
   public:
+    /// Debris slower than this times the deposited speed (1 m/s) rises by no more than 5 cm, and can fall only by
+    /// becoming faster.
+    static constexpr float fast_ratio = 10;
+
     MotionCount() = default;
     /// In m/s.
     explicit MotionCount(double deposited_speed)
@@ -31,10 +35,6 @@ class MotionCount {
     }
 
   private:
-    /// Debris slower than this times the deposited speed (1 m/s) rises by no more than 5 cm, and can fall only by
-    /// becoming faster.
-    static constexpr float fast_ratio = 10;
-
     float slow_ = 0, fast_ = 0;
 };
 

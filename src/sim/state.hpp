@@ -101,6 +101,12 @@ struct Particle {
 #undef TALUS_MEMBER
 };
 
+/// When debris came in or was entrained, and with which pore pressure.
+struct Entry {
+    float time = 0;                  ///< s
+    float pore_pressure_ratio = -1;  ///< r_u then; negative: that of the material
+};
+
 /// What a wall or roof took from a particle in the last step; a particle in a corner has two.
 struct BuildingContact {
     std::uint32_t particle;  ///< sorted index
@@ -143,6 +149,7 @@ struct State : StateSummary {
     TALUS_PARTICLE_ARRAYS(TALUS_MEMBER)
 #undef TALUS_MEMBER
     std::vector<float> density_of_id;  ///< kg/m3, by id; 0 and beyond its end: the rest density
+    std::vector<Entry> entry_of_id;    ///< by id, as far as r_u depends on it; not of releases, which have a start
 
     void resize(std::size_t n) {
 #define TALUS_RESIZE(array, element, name) sim::resize(name, n);

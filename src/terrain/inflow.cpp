@@ -66,6 +66,10 @@ double Inflow::velocity_at(double time) const {
     return value_at(hydrograph, &params::InflowSample::velocity, time);
 }
 
+double Inflow::pore_pressure_ratio_at(double time) const {
+    return value_at(hydrograph, &params::InflowSample::pore_pressure_ratio, time);
+}
+
 double Inflow::density_between(double early, double late) const {
     const double volume = volume_until(late) - volume_until(early);
     // Too little to divide by: no inflow, or for too short a time.

@@ -29,6 +29,8 @@ struct Inflow {
     [[nodiscard]] double velocity_at(double time) const;
     /// kg/m3, of the inflow between two times: its mass over its volume.
     [[nodiscard]] double density_between(double early, double late) const;
+    /// r_u with which debris comes in; negative: that of the material.
+    [[nodiscard]] double pore_pressure_ratio_at(double time) const;
     /// Of the whole hydrograph, m3.
     [[nodiscard]] double volume() const { return volume_until(hydrograph.back().time); }
     /// Mean over the ground that the debris would cover at inflow velocity, m; of inflow across a line.

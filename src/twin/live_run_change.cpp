@@ -41,12 +41,13 @@ constexpr double seconds_per_comparison = 13e-9;
 constexpr double seconds_per_particle = 0.5e-3, seconds_per_particle_and_piece = 12e-6;  // seeded
 
 /// Resistances: if any of them changes, debris at rest may move again.
-std::array<double, 6> holding_back(const sim::Model& model) {
+std::array<double, 7> holding_back(const sim::Model& model) {
     return {model.friction_coefficient,
             model.building_friction_coefficient,
             model.internal_friction_coefficient,
             model.viscosity,
-            model.cohesion,
+            model.cohesion / model.rest_density,
+            model.cover.empty() ? 0 : 1 / model.rest_density,  // cohesion of zones is divided by it
             model.pore_pressure_ratio};
 }
 

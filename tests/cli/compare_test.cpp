@@ -52,10 +52,12 @@ TEST(Compare, RunsBothModelsOfTheBuiltInSceneAndSaysWhereTheyPart) {
 
 TEST(Compare, RefusesASceneThatTheDepthAveragedModelCannotHave) {
     const SmallScene scene;
-    scene.replace("thickness_m = 0.3", "thickness_m = 0.3\npore_pressure_ratio = 0.5");
+    scene.write(read_text(scene.scene_file()) +
+                "[[barrier]]\nname = \"net\"\nline_m = [[824100, 825080], [824100, 825120]]\nheight_m = "
+                "1\npassing_share = 0.5\n");
     const auto outcome = run_program({"compare", "slope.toml"}, {.folder = scene.folder()});
     EXPECT_EQ(outcome.exit_code, 2);
-    EXPECT_THAT(outcome.error, HasSubstr("pore_pressure_ratio"));
+    EXPECT_THAT(outcome.error, HasSubstr("passing_share"));
     EXPECT_FALSE(fs::exists(scene.folder() / "talus_out"));
 }
 

@@ -1,4 +1,5 @@
 #include <cmath>
+#include <limits>
 #include <stdexcept>
 
 #include <gmock/gmock.h>
@@ -88,6 +89,54 @@ TEST_F(DepthAveragedRun, holds_a_release_until_its_start) {
     EXPECT_GT(series.back().volume_moving, 0);
 }
 
+TEST_F(DepthAveragedRun, drains_debris_from_the_start_of_its_release) {
+    const std::string observed = "[[observation]]\nchainage_m = 60\nfront_velocity_mps = 5\n";
+    const auto velocity = [&](const std::string& model, const char* start) {
+        const auto result =
+            run_scene(loaded(observed, {model, "solver.target_particle_count=600", "solver.end_time_s=30",
+                                        "material.friction_coefficient=0.45", "material.pore_pressure_ratio=0.6",
+                                        "material.pore_pressure_decay_time_s=10", start}),
+                      {});
+        EXPECT_TRUE(result);
+        return front_at(result->observation, 60).front_velocity;
+    };
+    for (const std::string model : {"solver.model=depth_averaged", "solver.model=particles"}) {
+        const double early = velocity(model, "release.start_time_s=0");
+        const double late = velocity(model, "release.start_time_s=20");
+        EXPECT_GT(early, 4);
+        EXPECT_NEAR(late, early, 0.05 * early) << model;
+    }
+}
+
+TEST_F(DepthAveragedRun, gives_every_release_the_pore_pressure_of_its_own) {
+    const auto dry = run_scene(loaded(""), {}), wet = run_scene(loaded("", {"release.pore_pressure_ratio=0.5"}), {});
+    const auto all_wet = run_scene(loaded("", {"material.pore_pressure_ratio=0.5"}), {});
+    ASSERT_TRUE(dry && wet && all_wet);
+    EXPECT_GT(wet->observation.run_out.along_flow, 1.2 * dry->observation.run_out.along_flow);
+    EXPECT_NEAR(wet->observation.run_out.along_flow, all_wet->observation.run_out.along_flow, 2.5);
+}
+
+TEST_F(DepthAveragedRun, ends_once_nothing_is_left_or_as_it_is_asked_to) {
+    const auto reason = [&](const std::vector<std::string>& overrides) {
+        const auto result = run_scene(loaded("", overrides), {});
+        return result ? result->stop_reason : result.error().message;
+    };
+    scene::Scene untriggered = loaded("");
+    untriggered.releases[0].spec.start_time = std::numeric_limits<double>::infinity();
+    const auto nothing = run_scene(untriggered, {});
+    ASSERT_TRUE(nothing);
+    EXPECT_EQ(nothing->stop_reason, "there is no debris");
+    EXPECT_LT(nothing->simulated_time, 1);
+    // Without friction all of it leaves the valley at its end.
+    const std::string left = reason({"material.friction_coefficient=0", "solver.end_time_s=4000"});
+    EXPECT_THAT(left, testing::AnyOf(testing::StartsWith("debris came to rest"),
+                                     testing::StrEq("all debris has left the terrain")));
+    EXPECT_THAT(reason({"solver.end_time_s=400", "solver.stop_energy_share=0.2", "solver.stop_duration_s=1"}),
+                testing::MatchesRegex("kinetic energy fell below 20 % of its peak \\(for 1 s\\) with .* m3 still "
+                                      "moving .*"));
+    EXPECT_THAT(reason({"solver.end_time_s=5"}), HasSubstr("still moving"));
+}
+
 TEST_F(DepthAveragedRun, gives_the_same_bits_on_any_number_of_threads) {
     const auto one = run_scene(loaded("", {"solver.thread_count=1"}), {});
     const auto four = run_scene(loaded("", {"solver.thread_count=4"}), {});
@@ -137,9 +186,8 @@ TEST_F(DepthAveragedRun, refuses_what_it_does_not_have_with_file_and_key) {
         write_valley(more);
         return load_error({"solver.model=depth_averaged"});
     };
-    EXPECT_THAT(error("pore_pressure_ratio = 0.4\n"),
-                AllOf(HasSubstr("scene.toml"), HasSubstr("release[0].pore_pressure_ratio")));
-    EXPECT_THAT(error(dam("height_m = 4\npassing_share = 0.3")), AllOf(HasSubstr("dam"), HasSubstr("no nets")));
+    EXPECT_THAT(error(dam("height_m = 4\npassing_share = 0.3")),
+                AllOf(HasSubstr("scene.toml"), HasSubstr("dam"), HasSubstr("no nets")));
     EXPECT_THAT(error("[solver]\ngrid_cell_m = 0.001\n"), AllOf(HasSubstr("grid_cell_m"), HasSubstr("at least")));
 }
 

@@ -89,6 +89,22 @@ TEST(TheClock, WhereSomeBlocksStopMuchLaterDebrisStraggles) {
     EXPECT_DOUBLE_EQ(uneven.expected_end(), 43 + (30. / 15 - 1.25) * (10 + 30) / 2);
 }
 
+TEST(TheClock, KnowsThatEnergyOrMomentumMayEndTheRunSooner) {
+    for (const bool by_energy : {true, false}) {
+        params::SolverSpec spec = solver();
+        (by_energy ? spec.stop_energy_share : spec.stop_momentum_share) = by_energy ? 0.01 : 0.1;
+        RunClock clock(spec), without(solver());
+        for (double time = 1; time <= 40; time += 1) {
+            Outlook outlook = coasting(200);
+            outlook.energy = time < 10 ? time : 10 * std::exp(-(time - 10) / 20);
+            clock.tick(time, time, [&] { return outlook; });
+            without.tick(time, time, [&] { return outlook; });
+        }
+        EXPECT_NEAR(clock.expected_end(), 10 + 20 * std::log(100) + 3, 2) << by_energy;
+        EXPECT_GT(without.expected_end(), 200);
+    }
+}
+
 TEST(TheClock, NeverPassesTheEndTime) {
     RunClock clock(solver());
     clock.tick(1, 10, [] { return coasting(290); });

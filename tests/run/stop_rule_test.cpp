@@ -1,8 +1,11 @@
 #include "run/stop_rule.hpp"
 
+#include <cmath>
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "run/run_result.hpp"
 #include "sim/simulation.hpp"
 
 namespace talus::run {
@@ -22,7 +25,8 @@ void set_speeds(sim::State& state, std::uint32_t first, std::uint32_t last, floa
 }
 
 bool at_rest(RestDetector& rest, const sim::State& state, bool waiting) {
-    return rest.at_rest(state, motion_of(state, params::OutputSpec{}.deposited_speed), waiting);
+    const sim::Motion motion = motion_of(state, params::OutputSpec{}.deposited_speed);
+    return rest.at_rest(state.time, moving_particles(state, motion), waiting);
 }
 
 /// Whether ten seconds of this are a run's end, with the default limits.
@@ -90,14 +94,94 @@ TEST(RestDetector, a_share_of_zero_never_ends_a_run) {
     EXPECT_FALSE(ends(debris(100, 0, 0), solver));
 }
 
-TEST(EndTime, says_what_still_moved) {
-    sim::Model model;
-    model.particle_spacing = 0.5;
-    model.solver.end_time = 90;
-    const auto reason = [&](const sim::State& state) { return end_time_reason(model, state, motion_of(state, 0.1)); };
-    EXPECT_EQ(reason(debris(100, 0, 0)), "reached solver.end_time_s = 90");
-    EXPECT_EQ(reason(debris(100, 56, 0.3F)),
-              "reached solver.end_time_s = 90 with 7 m3 still moving (56 % of the debris)");
+TEST(RestDetector, is_over_with_no_debris_left) {
+    EXPECT_TRUE(ends(debris(0, 0, 0)));
+    RestDetector rest{params::SolverSpec{}};
+    EXPECT_FALSE(rest.at_rest(0, {}, false));
+    EXPECT_TRUE(rest.at_rest(3, {}, false));
+}
+
+TEST(RestDetector, judges_volumes_as_it_does_particles) {
+    const auto ends_with = [](const MovingDebris& now) {
+        RestDetector rest{params::SolverSpec{}};
+        EXPECT_FALSE(rest.at_rest(0, now, false));
+        return rest.at_rest(4, now, false);
+    };
+    EXPECT_TRUE(ends_with({1000, 0.9, 0}));
+    EXPECT_FALSE(ends_with({1000, 1.1, 0}));
+    EXPECT_FALSE(ends_with({1000, 0.9, 0.2})) << "as fast as that, it may strike something";
+    EXPECT_TRUE(ends_with({3, 0.002, 0})) << "no volume is too little for a front";
+}
+
+observe::TimeSample sample_of(double time, double moving, double speed) {
+    observe::TimeSample sample;
+    sample.time = time;
+    sample.volume_moving = moving;
+    sample.volume_deposited = 100 - moving;
+    sample.largest_speed = speed;
+    sample.kinetic_energy = moving * speed * speed / 2;
+    sample.momentum = moving * speed;
+    return sample;
+}
+
+/// When a run of 100 m3 ends that gets 1 m/s faster per second for 10 s and then slows down by 0.1 m/s, at rest after
+/// 110 s; 0: later.
+double end_of(const params::SolverSpec& solver, double waits_until = 0) {
+    StopRule rule(solver);
+    for (int k = 0; k <= 1200; ++k) {
+        const double time = 0.1 * k, speed = std::max(0.0, time < 10 ? time : 11 - time / 10);
+        const double moving = speed >= 0.1 ? 100 : 0;
+        if (rule.over(time, {100, moving, speed >= 1 ? 100.0 : 0}, sample_of(time, moving, speed),
+                      time < waits_until)) {
+            EXPECT_GT(rule.reason().size(), 20U);
+            return time;
+        }
+    }
+    return 0;
+}
+
+TEST(StopRule, ends_by_energy_or_momentum_where_it_is_asked_to) {
+    params::SolverSpec solver;
+    EXPECT_NEAR(end_of(solver), 112.1, 0.3) << "at rest";
+    solver.stop_energy_share = 0.01;  // at a tenth of the greatest speed
+    EXPECT_NEAR(end_of(solver), 103, 0.3);
+    EXPECT_NEAR(end_of(solver, 50), 107, 0.3) << "of the peak since the last debris started";
+    solver.stop_duration = 0;
+    solver.stop_moving_share = 0;
+    EXPECT_NEAR(end_of(solver), 100, 0.3);
+    solver.stop_momentum_share = 0.5;
+    EXPECT_NEAR(end_of(solver), 60, 0.3);
+    solver.stop_energy_share = 0;
+    EXPECT_NEAR(end_of(solver), 60, 0.3);
+    solver.stop_momentum_share = 0;
+    EXPECT_EQ(end_of(solver), 0) << "never";
+}
+
+TEST(StopRule, says_which_of_them_ended_it) {
+    params::SolverSpec solver;
+    solver.stop_moving_share = 0;
+    solver.stop_momentum_share = 0.05;
+    StopRule rule(solver);
+    EXPECT_FALSE(rule.over(0, {}, sample_of(0, 100, 10), false));
+    EXPECT_FALSE(rule.over(1, {}, sample_of(1, 40, 1), false));
+    EXPECT_TRUE(rule.over(4, {}, sample_of(4, 40, 1), false));
+    EXPECT_FALSE(rule.at_rest());
+    EXPECT_EQ(rule.reason(), "momentum fell below 5 % of its peak (for 3 s)");
+}
+
+TEST(StillMoving, says_what_and_how_fast) {
+    std::vector<observe::TimeSample> rows{sample_of(0, 0, 0), sample_of(1, 100, 10), sample_of(2, 90, 4)};
+    EXPECT_EQ(with_what_moved("reached solver.end_time_s = 3", still_moving(rows, sample_of(3, 0, 0.05))),
+              "reached solver.end_time_s = 3");
+    EXPECT_EQ(with_what_moved("reached solver.end_time_s = 3", still_moving(rows, sample_of(3, 7, 3.21))),
+              "reached solver.end_time_s = 3 with 7 m3 still moving (7 % of the debris), at up to 3.2 m/s; its kinetic "
+              "energy was below 1 % of its peak from 2 s on");
+    const StillMoving most = still_moving(rows, sample_of(3, 80, 9));
+    EXPECT_EQ(most.volume, 80);
+    EXPECT_DOUBLE_EQ(most.share, 0.8);
+    EXPECT_EQ(most.greatest_speed, 9);
+    EXPECT_TRUE(std::isnan(most.slow_since));
+    EXPECT_EQ(still_moving(rows, sample_of(3, 0, 0.05)).greatest_speed, 0) << "of deposit";
 }
 
 }  // namespace

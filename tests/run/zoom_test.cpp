@@ -28,6 +28,37 @@ double momentum_of(const terrain::Inflow& inflow) {
     return sum;
 }
 
+TEST(BoundaryFlow, brings_debris_with_the_pore_pressure_that_is_left_in_it) {
+    const Grid<double> bed({0, 0, 0.5, 160, 40});
+    depth::Material material;
+    material.gravity = 0.01;
+    material.pore_pressure_ratio = 0.8;
+    for (const double decay : {0.0, 4.0}) {
+        material.pore_pressure_decay_time = decay;
+        depth::Solver solver(bed, material);
+        terrain::Inflow source;
+        source.from = {5, 5};
+        source.to = {5, 15};
+        source.hydrograph = {{0, 30, 6}, {8, 30, 6}};
+        depth::Inflows inflows(solver, {source});
+        BoundaryFlow flow(solver, {{{35, -5}, {60, -5}, {60, 25}, {35, 25}}, {}});
+        Grid<float> added(bed.geometry);
+        while (solver.time() < 12) {
+            ASSERT_TRUE(inflows.advance(solver, 12 - solver.time(), added));
+            flow.record(solver);
+        }
+        const double on_the_way = 30.0 / 6;  // s
+        for (const terrain::Inflow& piece : flow.inflows(0.5)) {
+            const double ratio = piece.pore_pressure_ratio_at(8);
+            if (decay > 0) {
+                EXPECT_NEAR(ratio, 0.8 * std::exp(-on_the_way / decay), 0.015);
+            } else {
+                EXPECT_LT(ratio, 0) << "that of the material";
+            }
+        }
+    }
+}
+
 TEST(BoundaryFlow, has_the_mass_and_momentum_of_a_stream_that_crosses_it_obliquely) {
     // Level ground without friction: a stream of 0.5 m at 6 m/s stays as it comes.
     const Grid<double> bed({0, 0, 0.5, 160, 40});

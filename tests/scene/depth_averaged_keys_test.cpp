@@ -82,7 +82,6 @@ TEST_F(DepthAveragedScene, refuses_what_the_model_lacks) {
     write_features("houses.geojson", {rectangle(150, 60, 160, 70, R"("strength": 20000, "name": "mill")")});
     const std::string houses = "[buildings]\nfile = \"houses.geojson\"\n";
     const std::map<std::string, std::string> scenes = {
-        {"release.pore_pressure_ratio", "pore_pressure_ratio = 0.4\n"},
         {"buildings.resistance_attribute", houses + "resistance_attribute = \"strength\"\n"},
         {"buildings.resistance_Pa", houses + "resistance_Pa = 20000\n"},
         {"barrier.passing_share", dam + "passing_share = 0.5\n"},

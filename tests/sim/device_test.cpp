@@ -19,8 +19,7 @@ namespace {
 using params::BackendChoice;
 
 /// Debris that slides against a house, over a bed that it entrains, joined by an inflow, some of it out of the terrain.
-Simulation busy(BackendChoice choice, double spacing = 0.5) {
-    params::MaterialSpec material;
+Simulation busy(BackendChoice choice, double spacing = 0.5, params::MaterialSpec material = {}) {
     material.turbulent_friction = 400;
     params::SolverSpec solver;
     solver.backend = choice;
@@ -97,6 +96,24 @@ TEST(Device, moves_a_whole_scene_as_the_processor_does) {
     EXPECT_LT(length(of_b.momentum - of_a.momentum), 0.05) << "m/s";
     EXPECT_FALSE(too_compressed(b));
     EXPECT_EQ(b.count + b.outflow, b.seeded);
+}
+
+TEST(Device, drains_what_comes_in_later_from_then_on_as_the_processor_does) {
+    params::MaterialSpec material;
+    material.friction_coefficient = 1;
+    material.internal_friction_coefficient = 0.5;
+    material.pore_pressure_ratio = 0.9;
+    material.pore_pressure_decay_time = 0.5;
+    Simulation processor = busy(BackendChoice::cpu, 0.8, material), device = busy(BackendChoice::host, 0.8, material);
+    for (int i = 0; i < 150; ++i) {
+        ASSERT_TRUE(processor.advance());
+        ASSERT_TRUE(device.advance());
+    }
+    const Summary of_a = summary_of(processor.state()), of_b = summary_of(device.state());
+    ASSERT_GT(processor.state().entry_of_id.size(), 100U);
+    EXPECT_GT(of_a.momentum.x, 0.3) << "only what came in lately moves";
+    EXPECT_NEAR(of_b.momentum.x, of_a.momentum.x, 0.1);
+    EXPECT_LT(length(of_b.centre - of_a.centre), 0.1);
 }
 
 TEST(Device, finds_the_neighbours_that_the_processor_finds) {

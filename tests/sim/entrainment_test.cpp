@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 #include <tbb/global_control.h>
 
+#include "sim/physics/resistance.hpp"
 #include "sim/sim_fixtures.hpp"
 
 namespace talus::testing {
@@ -38,9 +39,8 @@ void lay(sim::Ground& ground, const terrain::BedMaterial& material, float depth)
 }
 
 /// A block on a plane of 25 degrees, steeper than its friction angle.
-sim::Simulation slide(const terrain::BedMaterial& material, float depth) {
+sim::Simulation slide(const terrain::BedMaterial& material, float depth, params::MaterialSpec moving = {}) {
     const terrain::Terrain terrain = inclined_plane(25);
-    params::MaterialSpec moving;
     moving.friction_coefficient = 0.2;
     sim::Model model = sim::make_model(moving, {}, coarse_spacing);
     sim::Ground ground(terrain);
@@ -58,6 +58,22 @@ LocalPoint momentum(const sim::State& state) {
     LocalPoint sum;
     for (std::uint32_t i = 0; i < state.count; ++i) sum += state.velocity.at(i);
     return sum;
+}
+
+TEST(Entrainment, brings_debris_whose_pore_pressure_decays_from_then) {
+    params::MaterialSpec moving;
+    moving.pore_pressure_ratio = 0.3;
+    moving.pore_pressure_decay_time = 5;
+    sim::Simulation simulation = slide(growing(0.02), 1, moving);
+    const std::uint32_t released = simulation.state().count;
+    while (simulation.state().entrained < 20) ASSERT_TRUE(simulation.advance());
+    const double time = simulation.state().time;
+    const auto& entries = simulation.state().entry_of_id;
+    ASSERT_EQ(entries.size(), simulation.state().seeded);
+    EXPECT_GT(entries[released].time, 0.05);
+    EXPECT_NEAR(entries.back().time, time, 0.1);
+    EXPECT_NEAR(effective_share(simulation.model(), entries, entries.size() - 1, time), 0.7, 0.01);
+    EXPECT_LT(entries[released].time, entries.back().time);
 }
 
 TEST(Entrainment, grows_by_the_law_and_takes_it_from_the_ground) {

@@ -52,6 +52,34 @@ terrain::Inflow rain(std::vector<params::InflowSample> hydrograph, std::optional
     return over;
 }
 
+TEST(Inflow, says_when_debris_came_in_if_its_pore_pressure_decays_from_then) {
+    params::MaterialSpec material;
+    material.pore_pressure_ratio = 0.6;
+    const auto entries = [&](const terrain::Inflow& source) {
+        const Model model = make_model(material, {}, 0.5);
+        const Ground ground = plane();
+        InflowFeeder feeder(model, ground.terrain.frame(), {source});
+        State state;
+        state.time_step = 0.05;
+        for (state.time = 0; state.time < 63; state.time += state.time_step) feeder.inject(model, ground, state);
+        EXPECT_GT(state.count, 20U);
+        return state.entry_of_id;
+    };
+    const std::vector<params::InflowSample> late{{60, 8, 2}, {62, 8, 2}};
+    EXPECT_TRUE(entries(inflow(late)).empty()) << "it is constant";
+    material.pore_pressure_decay_time = 2;
+    for (const terrain::Inflow& source : {inflow(late), rain(late)}) {
+        double before = 60;
+        for (const Entry& entry : entries(source)) {
+            EXPECT_GE(entry.time, before - 1e-4) << source.name;
+            EXPECT_LE(entry.time, 62.06) << source.name;
+            EXPECT_LT(entry.pore_pressure_ratio, 0) << source.name;
+            before = entry.time;
+        }
+        EXPECT_GT(before, 61.5) << source.name;
+    }
+}
+
 TEST(AreaSource, brings_the_volume_to_the_particle_evenly_over_the_area) {
     for (const double step : {0.001, 0.0137, 0.4}) {
         const Model model = make_model({}, {}, testing::fine_spacing);

@@ -64,6 +64,19 @@ TEST(Scenario, comes_to_rest_as_the_run_does_and_goes_on_when_something_changes)
     EXPECT_GT(number(*scenario, "largest_speed_mps"), 1) << "debris at rest was not woken";
 }
 
+TEST(Scenario, debris_that_cohesion_holds_wakes_when_it_becomes_heavier) {
+    scene::Scene scene = channel_scene();
+    scene.spec.material.friction_coefficient = 0.1;
+    scene.spec.material.cohesion = 30000;
+    scene.spec.solver.stop_duration = 1;
+    const auto scenario = open(scene);
+    run_until(*scenario, 100);
+    ASSERT_EQ(scenario->phase(), run::RunPhase::at_rest) << scenario->message();
+    act(*scenario, {{"action", "set_parameter"}, {"key", "material.rest_density_kgpm3"}, {"value", 25000}});
+    run_until(*scenario, scenario->time() + 1);
+    EXPECT_GT(number(*scenario, "largest_speed_mps"), 1) << "cohesion is divided by density";
+}
+
 TEST(Scenario, a_parameter_holds_from_the_next_step_on) {
     const auto changed = open(channel_scene()), unchanged = open(channel_scene());
     run_until(*changed, 1);

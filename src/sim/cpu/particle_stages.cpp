@@ -90,7 +90,7 @@ TALUS_STAGE void resist(const StageData& data, std::size_t first, std::size_t la
         L share(1);
         for (int lane = 0; lane < lane_count; ++lane) {
             const std::uint32_t id = state.id[i + static_cast<std::size_t>(lane)];
-            share.set(lane, static_cast<float>(effective_share(model, id, state.time)));
+            share.set(lane, static_cast<float>(effective_share(model, state.entry_of_id, id, state.time)));
         }
         const V3 p = load(state.position, i), velocity = load(state.velocity, i);
         const GroundResistance<L> ground = ground_resistance(model, p);

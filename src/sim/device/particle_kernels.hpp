@@ -116,7 +116,7 @@ struct Resist {
     double time{};
 
     TALUS_DEVICE void operator()(std::uint32_t i) const {
-        const auto share = static_cast<float>(effective_share(d.model, d.state.id[i], time));
+        const auto share = static_cast<float>(effective_share(d.model, d.state.entry_of_id, d.state.id[i], time));
         const LocalPoint p = d.state.position[i], velocity = d.state.velocity[i];
         const GroundResistance<float> ground = ground_resistance(d.model, p);
         Resistance result;

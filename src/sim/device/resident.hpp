@@ -38,6 +38,8 @@ class Resident : public Backend {
 #undef TALUS_UPLOAD
         density_of_id_.upload(state.density_of_id);
         data_.state.density_of_id = {density_of_id_.data(), state.density_of_id.size()};
+        entry_of_id_.upload(state.entry_of_id);
+        data_.state.entry_of_id = {entry_of_id_.data(), state.entry_of_id.size()};
     }
 
     void fetch(State& state) override {
@@ -217,6 +219,7 @@ class Resident : public Backend {
     TALUS_KEPT_ARRAYS(TALUS_MEMBER)
 #undef TALUS_MEMBER
     Memory<float> density_of_id_{executor_};
+    Memory<Entry> entry_of_id_{executor_};
     Memory<ReleaseView> releases_{executor_};
     Memory<Quad> boundary_nodes_{executor_}, by_slope_{executor_}, sticking_{executor_};
     Memory<Quad> cover_{executor_}, terrain_{executor_};

@@ -44,6 +44,7 @@ struct ParticleArrays {
     TALUS_PARTICLE_ARRAYS(TALUS_MEMBER)
 #undef TALUS_MEMBER
     std::span<const float> density_of_id;
+    std::span<const Entry> entry_of_id;
 
     /// Whether a step moves it.
     [[nodiscard]] TALUS_DEVICE bool moves(std::uint32_t i) const {

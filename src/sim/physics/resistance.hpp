@@ -37,12 +37,18 @@ TALUS_DEVICE double start_time_of(const AnyModel& model, std::uint32_t id) {
     return 0;
 }
 
-/// The share of the normal stress that the grains of a particle's release bear, 1 - r_u(t) (Hutchinson 1986, "A
+/// The share of the normal stress that the grains of a particle bear, 1 - r_u(t) (Hutchinson 1986, "A
 /// sliding-consolidation model for flow slides", whose excess pressure falls as the first mode of consolidation does,
-/// exponentially). `id`: of the particle.
-template <class AnyModel>
-TALUS_DEVICE double effective_share(const AnyModel& model, std::size_t id, double time) {
+/// exponentially), from when it starts to move, comes in or is entrained. `id`: of the particle; `entry_of_id`: see
+/// State.
+template <class AnyModel, class Entries>
+TALUS_DEVICE double effective_share(const AnyModel& model, const Entries& entry_of_id, std::size_t id, double time) {
     double ratio = model.pore_pressure_ratio, since = time;
+    if (id < entry_of_id.size()) {
+        const double own = entry_of_id[id].pore_pressure_ratio;
+        ratio = own >= 0 ? own : ratio;
+        since = std::max(0.0, time - static_cast<double>(entry_of_id[id].time));
+    }
     for (const auto& release : model.releases) {
         if (id < release.first_particle || id >= release.last_particle) continue;
         ratio = release.pore_pressure_ratio.value_or(ratio);

@@ -65,6 +65,7 @@ double particles_in_column(const Model& model, const State& state, const Vector&
 
 State::State(const sim::State& state)
     : time(state.time), time_step(state.time_step), previous_time_step(state.previous_time_step), step(state.step) {
+    entry_of_id = state.entry_of_id;
     particles.resize(state.count);
     for (std::uint32_t i = 0; i < state.count; ++i) {
         Particle& p = particles[state.id[i]];
@@ -132,7 +133,7 @@ void Backend::predict_positions(const Model& model, const Ground&, State& state)
 void Backend::prepare_particles(const Model& model, const Ground& ground, State& state) {
     for (std::size_t id = 0; id < state.particles.size(); ++id) {
         Particle& p = state.particles[id];
-        p.effective_share = effective_share(model, id, state.time);
+        p.effective_share = effective_share(model, state.entry_of_id, id, state.time);
         const GroundResistance<double> resistance = ground_resistance(model, p.position);
         const terrain::GroundSample<double> below = ground.terrain.sample(p.position.x, p.position.y);
         const double speed = length(p.velocity - below.normal * dot(p.velocity, below.normal));

@@ -36,6 +36,7 @@ struct State {
     double time = 0, time_step = 0, previous_time_step = 0;
     std::uint64_t step = 0;
     std::vector<Particle> particles;
+    std::vector<Entry> entry_of_id;
     // Of the last step; see compression.hpp.
     double mean_compression = 0, max_compression = 0, mean_added_compression = 0, squeezed_share = 0,
            squeezing_share = 0;

@@ -224,8 +224,9 @@ void Entrainment::apply(const Model& model, Ground& ground, State& state) {
         ground.erode(site.cell, depth);
         choose_foot(model, ground, state, s);
         make_room(model, ground, state, s);
-        add_particle(state, site.foot + site.normal * static_cast<float>(model.contact_distance()), {},
-                     state.multiplier[site.particle]);
+        const LocalPoint place = site.foot + site.normal * static_cast<float>(model.contact_distance());
+        const std::uint32_t i = add_particle(state, place, {}, state.multiplier[site.particle]);
+        set_entry(model, state, i, state.time);
         ++state.entrained;
     }
 }

@@ -85,6 +85,8 @@ void InflowFeeder::inject(const Model& model, const Ground& ground, State& state
             const std::uint32_t first = state.count;
             source.add_row(model, ground, state, state.time - source.last_time);
             ++source.rows;
+            const double ratio = source.inflow.pore_pressure_ratio_at(source.last_time);
+            for (std::uint32_t i = first; i < state.count; ++i) set_entry(model, state, i, source.last_time, ratio);
             if (!source.inflow.has_density()) continue;
             const double density = source.inflow.density_between(before, source.last_time);
             for (std::uint32_t i = first; i < state.count; ++i) set_density(state, i, density);
