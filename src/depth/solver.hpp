@@ -186,7 +186,6 @@ class Solver {
     std::size_t stride_ = 0, origin_ = 0;  ///< origin_: index of the padded grid's south-western cell
     std::vector<float> bed_, slope_x_, slope_y_;
     std::vector<float> depth_, u_, v_, next_depth_, next_u_, next_v_, spare_, next_spare_;
-    std::vector<float> depth_, u_, v_, next_depth_, next_u_, next_v_;
     /// r_u of the debris in a cell, as it was or would have been at drained_from_: all of it falls alike, so that cells
     /// at rest need no step. Empty: it is the same everywhere and constant.
     std::vector<float> pore_pressure_, next_pore_pressure_;
