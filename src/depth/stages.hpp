@@ -42,6 +42,7 @@ struct StageData {
     Cover cover{};
     const float* structure = nullptr;  ///< by cell, 1: a structure stands there; null: none anywhere
     Inflow inflow{};
+    float *passes_east = nullptr, *passes_north = nullptr;  ///< m2/s through those faces of a cell; null: not wanted
 };
 
 struct Stages {

@@ -257,6 +257,11 @@ HWY_INLINE void update(const StageData& data, Scratch& scratch, int r, std::ptrd
         bound = sqrt(comes_x * comes_x + comes_y * comes_y) / larger(comes, L(1e-12F));
     }
 
+    if (data.passes_east != nullptr) {
+        load(x.mass, j).store(data.passes_east + i);
+        load(north.mass, j).store(data.passes_north + i);
+    }
+
     const L m_up = bed_x * m_x + bed_y * m_y, momentum = sqrt(m_x * m_x + m_y * m_y + m_up * m_up);
     const L normal_force = larger(zero, gravity * depth / (one + tilt) + curvature);
     const L left =

@@ -63,12 +63,12 @@ Json net_balances(const std::vector<observe::BuildingImpact>& impacts) {
     Json list = Json::array();
     for (const observe::BuildingImpact& net : impacts) {
         if (!net.hit || std::isnan(net.passing_share)) continue;
-        const double all = net.held_volume + net.passed_volume + net.overtopped_volume;
+        const double all = net.retained_volume + net.passed_volume + net.overtopped_volume;
         list.push_back({{"name", name_of(net)},
                         {"passing_percent", 100 * net.passing_share},
                         {"arrived_m3", all},
-                        {"held_m3", net.held_volume},
-                        {"held_percent", all > 0 ? Json(100 * net.held_volume / all) : Json()},
+                        {"retained_m3", net.retained_volume},
+                        {"retained_percent", all > 0 ? Json(100 * net.retained_volume / all) : Json()},
                         {"passed_m3", net.passed_volume},
                         {"overtopped_m3", net.overtopped_volume},
                         {"peak_force_kN", net.peak_force / 1e3}});
@@ -93,7 +93,7 @@ Json net_chart(const run::RunResult& result) {
         std::vector<double> t, held, through, over;
         for (const observe::StructureSample& s : net->history) {
             t.push_back(s.time);
-            held.push_back(s.held_volume);
+            held.push_back(s.retained_volume);
             through.push_back(s.passed_volume);
             over.push_back(s.overtopped_volume);
             time.include(s.time);
@@ -186,8 +186,8 @@ Json barriers(const run::RunResult& result) {
             columns.insert(columns.end(), {{"overtopped_m3", "Over the crest", "m³", "f1", "", "–", true},
                                            {"first_overtopped_s", "First over", "s", "f1"},
                                            {"passed_m3", "Through openings and meshes", "m³", "f1"},
-                                           {"held_m3", "Held at the end", "m³", "f1"},
-                                           {"peak_held_m3", "Held at most", "m³", "f1"},
+                                           {"retained_m3", "Held at the end", "m³", "f1"},
+                                           {"peak_retained_m3", "Held at most", "m³", "f1"},
                                            {"peak_filling_height_m", "Filled at most", "m", "f2"}});
         }
         rows = table(columns);
@@ -206,8 +206,8 @@ Json barriers(const run::RunResult& result) {
             row.update({{"overtopped_m3", b.overtopped_volume},
                         {"first_overtopped_s", seconds(b.first_overtopping_time)},
                         {"passed_m3", b.passed_volume},
-                        {"held_m3", b.held_volume},
-                        {"peak_held_m3", b.peak_held_volume},
+                        {"retained_m3", b.retained_volume},
+                        {"peak_retained_m3", b.peak_retained_volume},
                         {"peak_filling_height_m", b.peak_filling_height}});
         }
     }

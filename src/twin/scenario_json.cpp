@@ -152,7 +152,7 @@ json impact_json(const std::string& id, const observe::BuildingImpact& impact, b
         row["overtopped_m3"] = impact.overtopped_volume;
         row["first_overtopped_s"] = number_or_null<json>(impact.first_overtopping_time);
         row["passed_m3"] = impact.passed_volume;
-        row["held_m3"] = impact.held_volume;
+        row["retained_m3"] = impact.retained_volume;
         row["peak_filling_height_m"] = impact.peak_filling_height;
     }
     return row;
