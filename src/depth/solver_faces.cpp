@@ -1,14 +1,15 @@
 // What passes faces of the grid.
-#include "depth/solver.hpp"
-
 #include <utility>
+
+#include "depth/solver.hpp"
 
 namespace talus::depth {
 
 void Solver::watch(std::vector<Face> faces) {
     faces_ = std::move(faces);
     passed_.assign(faces_.size(), 0);
-    for (std::vector<float>* array : {&passes_east_, &passes_north_}) array->assign(faces_.empty() ? 0 : depth_.size(), 0);
+    for (std::vector<float>* array : {&passes_east_, &passes_north_})
+        array->assign(faces_.empty() ? 0 : depth_.size(), 0);
 }
 
 void Solver::count_passing(bool second) {

@@ -4,10 +4,6 @@
 
 namespace talus::observe {
 
-/// Debris of the depth-averaged model that is thinner than this share of the arrival depth does not count as having
-/// reached a place.
-inline constexpr double thinnest_share = 0.1;
-
 /// Speed along the ground of horizontal velocities over its slopes.
 [[nodiscard]] inline float speed_of(float u, float v, float slope_x, float slope_y) {
     const float w = u * slope_x + v * slope_y;

@@ -13,6 +13,8 @@
 namespace talus::observe {
 namespace {
 
+/// Debris thinner than this share of the arrival depth does not count as having reached a cell.
+constexpr double thinnest_share = 0.1;
 /// So many parcels of equal volume stand for the debris where its run-out is measured as that of particles.
 constexpr double parcels = 20000;
 

@@ -13,9 +13,10 @@ namespace {
 /// Cells farther from a wall than this are not before it, in cells: a structure stands on cells that its walls cross.
 constexpr double farthest_cell = 2.5;
 
-bool inside_own(const terrain::Building& building, const PlanPoint& p) {
+/// Whether a column of a wall stands on a lower part of its own building: no cells are before it.
+bool above_own_part(const terrain::Building& building, const PlanPoint& before) {
     return std::any_of(building.footprint.begin(), building.footprint.end(),
-                       [&](const Polygon& part) { return contains(part, p); });
+                       [&](const Polygon& part) { return contains(part, before); });
 }
 
 }  // namespace
@@ -28,7 +29,6 @@ GridStructures::GridStructures(const depth::Solver& solver, const terrain::Terra
       origin_{terrain.frame().origin.x, terrain.frame().origin.y},
       density_(solver.material().rest_density),
       gravity_(solver.material().gravity),
-      least_depth_(thinnest_share * outputs.arrival_depth),
       now_(buildings.size()),
       sums_(outputs.impact_filter_window) {
     for (const terrain::Building& building : buildings) {
@@ -56,9 +56,9 @@ void GridStructures::add_walls(const depth::Solver& solver, const terrain::Terra
         const PlanPoint out{column.along_y, -column.along_x};
         const PlanPoint middle{column.x + column.along_x * column.width / 2,
                                column.y + column.along_y * column.width / 2};
-        constexpr double off = 0.02;  // m: where two parts of a structure meet there is no wall
-        const PlanPoint before{middle.x + off * out.x, middle.y + off * out.y};
-        if (inside_own(buildings[b], {before.x + origin_.x, before.y + origin_.y})) continue;
+        if (above_own_part(buildings[b], {middle.x + 0.02 * out.x + origin_.x, middle.y + 0.02 * out.y + origin_.y})) {
+            continue;
+        }
         Wall wall{.building = b,
                   .towards_x = -out.x,
                   .towards_y = -out.y,
@@ -73,7 +73,7 @@ void GridStructures::add_walls(const depth::Solver& solver, const terrain::Terra
         wall.last = cells_.size();
         if (wall.first == wall.last) continue;
         for (const Barrier& barrier : barriers_) {
-            if (barrier.building == b) wall.side = barrier.line.place_of(before).side;
+            if (barrier.building == b) wall.side = barrier.line.place_of({middle.x + out.x, middle.y + out.y}).side;
         }
         walls_.push_back(wall);
     }
@@ -219,13 +219,14 @@ void GridStructures::count_crossings(const depth::Solver& solver) {
             const double through = room > 0 ? std::min(1.0, room / std::max(depth, 1e-9)) : 0;
             barrier.over += crossing.sign * passed * (1 - through);
             barrier.through += crossing.sign * passed * through;
-            goes_over = goes_over || (through < 1 && depth > least_depth_);
+            goes_over = goes_over || (through < 1 && depth > outputs_.arrival_depth);
         }
         // In the direction with the larger total volume, as of particles.
         const double direction = barrier.over + barrier.through < 0 ? -1 : 1;
         impact.overtopped_volume = std::max(0.0, direction * barrier.over);
         impact.passed_volume = std::max(0.0, direction * barrier.through);
-        if (goes_over && std::isnan(impact.first_overtopping_time)) impact.first_overtopping_time = solver.time();
+        if (goes_over && impact.hit && std::isnan(impact.first_overtopping_time))
+            impact.first_overtopping_time = solver.time();
     }
 }
 

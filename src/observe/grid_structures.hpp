@@ -24,8 +24,8 @@ struct StructureCells {
     std::vector<std::size_t> cells{};  ///< of the grid
 };
 
-/// Impact of debris of the depth-averaged model on structures, by the definitions of ImpactRecorder: walls have the same
-/// columns and patches, what stands before a column is the flow in the cells within a patch edge of it. Instead of
+/// Impact of debris of the depth-averaged model on structures, by the definitions of ImpactRecorder: walls have the
+/// same columns and patches, what stands before a column is the flow in the cells within a patch edge of it. Instead of
 /// impulses a wall takes the momentum flux of the flow towards it and its weight. And what passes barriers and lies
 /// behind them.
 class GridStructures {
@@ -58,15 +58,15 @@ class GridStructures {
     };
     struct Crossing {
         std::size_t face;
-        double sign;         ///< 1: east or north is from the line's left to its right
+        double sign;                 ///< 1: east or north is from the line's left to its right
         std::array<double, 2> room;  ///< m, from the ground before and after the face up to the crest of an opening
     };
     struct Barrier {
         std::size_t building;
         BarrierLine line;
         std::vector<Crossing> crossings;
-        std::vector<std::size_t> cells;   ///< of its own, in order
-        double over = 0, through = 0;     ///< m3, from left to right
+        std::vector<std::size_t> cells;  ///< of its own, in order
+        double over = 0, through = 0;    ///< m3, from left to right
     };
     struct Now {
         double force = 0, pressure = 0, depth = 0, dynamic_pressure = 0;  // unfiltered; of the flow in front
@@ -91,7 +91,7 @@ class GridStructures {
     params::OutputSpec outputs_;
     GridGeometry grid_;
     PlanPoint origin_;  ///< world, of local positions
-    double density_, gravity_, least_depth_;
+    double density_, gravity_;
     std::vector<Cell> cells_;
     std::vector<Wall> walls_;
     std::vector<Barrier> barriers_;
