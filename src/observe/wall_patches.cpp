@@ -8,7 +8,7 @@ namespace talus::observe {
 namespace {
 
 int parts_of(double length, double edge) {
-    return std::max(1, static_cast<int>(length / edge));
+    return std::max(1, static_cast<int>(length / edge + 1e-6));  // three metres less rounding are three parts
 }
 
 /// Twice the signed area: positive where a ring runs counter-clockwise.
