@@ -105,7 +105,7 @@ TEST_F(Products, BarriersHaveTheirVolumesAndTheirHistory) {
     EXPECT_THAT(report, HasSubstr("House 38 failed at 12.50 s"));
     EXPECT_THAT(report, HasSubstr("Force on structures over time."));
     EXPECT_THAT(report, HasSubstr("<h3>Barriers</h3>"));
-    EXPECT_THAT(report, testing::Not(HasSubstr("What nets held and let through.")));
+    EXPECT_THAT(report, testing::Not(HasSubstr("What nets retained and let through.")));
     dam.passing_share = 0.4;
     dam.hit = true;
     dam.retained_volume = 44;
@@ -113,7 +113,7 @@ TEST_F(Products, BarriersHaveTheirVolumesAndTheirHistory) {
     ASSERT_TRUE(write_tables(*scene_, result, folder.path()).ok());
     EXPECT_EQ(rows_of(test::read_text(folder.path() / "buildings.csv"))[1][11], "net");
     const std::string of_net = test::report_page(*scene_, result);
-    EXPECT_THAT(of_net, HasSubstr("What nets held and let through."));
+    EXPECT_THAT(of_net, HasSubstr("What nets retained and let through."));
     EXPECT_THAT(of_net, HasSubstr("its meshes let 40 % of the grains through"));
     EXPECT_THAT(of_net, HasSubstr("Of 60.0 m³ that came to it, 44.0 m³ lie behind it (73 %), 8.8 m³ went through"));
     const std::string without = test::report_page(*scene_, *result_);
