@@ -157,9 +157,9 @@ TEST(GridStructures, the_height_of_a_dam_has_no_part_in_what_it_retains) {
         depth::Solver solver = flume.solver();
         retained.push_back(run(flume, solver, 0.5, 2, 2).retained_volume);
     }
-    EXPECT_NEAR(retained[0], 0.5 * 20 * 30, 1) << "all of it, from the first row to the last";
-    EXPECT_EQ(retained[0], retained[1]);
-    EXPECT_EQ(retained[0], retained[2]);
+    EXPECT_NEAR(retained[0], 0.5 * 20 * 30, 4) << "all but what left over the western edge";
+    EXPECT_NEAR(retained[0], retained[1], 1e-4 * retained[0]);
+    EXPECT_NEAR(retained[0], retained[2], 1e-4 * retained[0]);
 }
 
 }  // namespace
