@@ -91,19 +91,19 @@ TEST_F(NotMeasured, is_empty_in_every_file_and_nothing_else_is) {
     const std::vector<Field> fields = documented();
     ASSERT_GT(fields.size(), 10U);
     const std::filesystem::path particles = written("particles"), flat = written("depth_averaged");
-    for (const auto& [folder, is_flat] : {std::pair{particles, false}, {flat, true}}) {
+    for (const auto& [from, is_flat] : {std::pair{particles, false}, {flat, true}}) {
         for (const Field& field : fields) {
             SCOPED_TRACE(field.file + " " + field.name + (is_flat ? ", depth-averaged" : ", particles"));
             const bool measured = is_flat ? field.depth_averaged : field.with_particles;
             if (field.file.ends_with(".json")) {
-                const json all = json::parse(test::read_text(folder / field.file));
+                const json all = json::parse(test::read_text(from / field.file));
                 const json::json_pointer place(field.name);
                 EXPECT_EQ(all.contains(place) && !all.at(place).is_null(), measured);
                 continue;
             }
-            const Columns columns = columns_of(folder / field.file);
-            ASSERT_TRUE(columns.contains(field.name));
-            const auto& values = columns.at(field.name);
+            const Columns table = columns_of(from / field.file);
+            ASSERT_TRUE(table.contains(field.name));
+            const auto& values = table.at(field.name);
             EXPECT_EQ(std::any_of(values.begin(), values.end(), [](const auto& v) { return !v.empty(); }), measured);
         }
     }
@@ -126,13 +126,13 @@ TEST_F(NotMeasured, is_empty_in_every_file_and_nothing_else_is) {
 
 TEST_F(NotMeasured, has_no_step_before_the_first) {
     for (const char* model : {"particles", "depth_averaged"}) {
-        const Columns columns = columns_of(written(model) / "timeseries.csv");
+        const Columns table = columns_of(written(model) / "timeseries.csv");
         for (const char* name :
              {"mean_compression", "max_compression", "squeezed_share", "time_step_s", "steps_per_second"}) {
-            EXPECT_EQ(columns.at(name).front(), "") << model << " " << name;
+            EXPECT_EQ(table.at(name).front(), "") << model << " " << name;
         }
-        EXPECT_NE(columns.at("time_step_s").back(), "") << model;
-        EXPECT_NE(columns.at("volume_held_m3").front(), "0") << model;
+        EXPECT_NE(table.at("time_step_s").back(), "") << model;
+        EXPECT_NE(table.at("volume_held_m3").front(), "0") << model;
     }
 }
 
