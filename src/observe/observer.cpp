@@ -40,7 +40,7 @@ TimeSample make_sample(const sim::Model& model, const Debris& debris, double dep
     sample.mean_compression = state.mean_compression;
     sample.max_compression = state.max_compression;
     sample.squeezed_share = state.squeezed_share;
-    sample.time_step = state.time_step;
+    sample.time_step = state.step > 0 ? state.time_step : 0;
     sample.steps_per_second = steps_per_second;
     return sample;
 }
