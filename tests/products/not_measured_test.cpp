@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 
 #include "products/products.hpp"
+#include "products/writers.hpp"
 #include "run/run_scene.hpp"
 #include "scene/scene_folder.hpp"
 #include "support/fixtures.hpp"
@@ -67,8 +68,8 @@ Columns columns_of(const std::filesystem::path& file) {
 
 class NotMeasured : public scene::SceneFolder {
   protected:
-    /// A run of the valley with a dam and a house, and all that it writes.
-    [[nodiscard]] std::filesystem::path written(const std::string& model) const {
+    /// A run of the valley with a dam and a house, and all that it writes, or its tables alone.
+    [[nodiscard]] std::filesystem::path written(const std::string& model, bool tables = false) const {
         write_features("houses.geojson", {rectangle(100, 96, 108, 104)});
         write_valley(
             fmt::format("[buildings]\nfile = \"houses.geojson\"\n[[barrier]]\nname = \"dam\"\nline_m = [[{0}, "
@@ -81,7 +82,7 @@ class NotMeasured : public scene::SceneFolder {
         if (!result) throw std::runtime_error(result.error().message);
         const std::filesystem::path to = folder / model;
         std::filesystem::create_directories(to);
-        const Status status = write_products(*scene, *result, to);
+        const Status status = tables ? write_tables(*scene, *result, to, "") : write_products(*scene, *result, to);
         if (!status.ok()) throw std::runtime_error(status.error().message);
         return to;
     }
@@ -126,7 +127,7 @@ TEST_F(NotMeasured, is_empty_in_every_file_and_nothing_else_is) {
 
 TEST_F(NotMeasured, has_no_step_before_the_first) {
     for (const char* model : {"particles", "depth_averaged"}) {
-        const Columns table = columns_of(written(model) / "timeseries.csv");
+        const Columns table = columns_of(written(model, true) / "timeseries.csv");
         for (const char* name :
              {"mean_compression", "max_compression", "squeezed_share", "time_step_s", "steps_per_second"}) {
             EXPECT_EQ(table.at(name).front(), "") << model << " " << name;
