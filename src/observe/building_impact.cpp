@@ -154,9 +154,11 @@ void ImpactRecorder::take_approach(const sim::Model& model, const sim::Ground& g
     }
     for (std::size_t b = 0; b < impacts_.size(); ++b) {
         if (!impacts_[b].hit) continue;
-        impacts_[b].peak_depth = records_[b].peak_depth;
-        impacts_[b].peak_dynamic_pressure = records_[b].peak_dynamic_pressure;
-        impacts_[b].peak_speed = records_[b].peak_speed;
+        const Record& record = records_[b];
+        const bool measured = record.peak_depth >= least_depth_;  // thinner debris has no velocity
+        impacts_[b].peak_depth = record.peak_depth;
+        impacts_[b].peak_dynamic_pressure = measured ? record.peak_dynamic_pressure : never;
+        impacts_[b].peak_speed = measured ? record.peak_speed : never;
     }
 }
 
@@ -228,11 +230,13 @@ void ImpactRecorder::add_row(const Debris& debris) {
     for (std::size_t b = 0; b < impacts_.size(); ++b) {
         BuildingImpact& impact = impacts_[b];
         if (!impact.hit) continue;
+        const double depth = records_[b].depth;
+        const bool too_thin = depth > 0 && depth < least_depth_;  // to have a velocity
         StructureSample sample{.time = debris.summary().time,
                                .force = force_on(records_[b]),
                                .impact_pressure = highest_pressure(records_[b]),
-                               .depth = records_[b].depth,
-                               .dynamic_pressure = records_[b].dynamic_pressure,
+                               .depth = depth,
+                               .dynamic_pressure = too_thin ? never : records_[b].dynamic_pressure,
                                .impulse = impact.impulse,
                                .overtopped_volume = impact.overtopped_volume,
                                .passed_volume = impact.passed_volume};

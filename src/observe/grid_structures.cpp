@@ -161,7 +161,7 @@ void GridStructures::measure_walls(const depth::Solver& solver) {
             y += part * v;
             up += part * (u * solver.slope_x_at(c, r) + v * solver.slope_y_at(c, r));
         }
-        if (depth <= outputs_.arrival_depth) continue;
+        if (!(depth > 0)) continue;
         x /= depth;
         y /= depth;
         up /= depth;
@@ -174,12 +174,12 @@ void GridStructures::measure_walls(const depth::Solver& solver) {
             const double wet = std::min(depth, height);
             return dynamic * wet + density_ * gravity_ * wet * (depth - wet / 2);
         };
-        const double force = force_below(wall.height) * wall.width;
         const double pressure = force_below(wall.patch_height) * wall.width / wall.patch_area;  // the lowest: highest
-        now.force += force;
+        now.force += force_below(wall.height) * wall.width;
         now.depth = std::max(now.depth, depth);
-        now.dynamic_pressure = std::max(now.dynamic_pressure, dynamic);
         sums_.add(impacts_.size() + w, pressure * time_step);
+        if (depth <= outputs_.arrival_depth) continue;  // too thin to hit, or to have a velocity
+        now.dynamic_pressure = std::max(now.dynamic_pressure, dynamic);
         impact.peak_speed = std::max(impact.peak_speed, std::sqrt(x * x + y * y + up * up));
         if (!impact.hit) {
             impact.hit = true;
@@ -276,11 +276,12 @@ GridStructures::Filling GridStructures::filling(const depth::Solver& solver, con
 void GridStructures::add_rows(const depth::Solver& solver) {
     for (std::size_t b = 0; b < impacts_.size(); ++b) {
         if (!impacts_[b].hit) continue;
+        const bool too_thin = now_[b].depth > 0 && now_[b].depth <= outputs_.arrival_depth;
         impacts_[b].history.push_back({.time = solver.time(),
                                        .force = sums_.rate(b),
                                        .impact_pressure = now_[b].pressure,
                                        .depth = now_[b].depth,
-                                       .dynamic_pressure = now_[b].dynamic_pressure,
+                                       .dynamic_pressure = too_thin ? never : now_[b].dynamic_pressure,
                                        .impulse = impacts_[b].impulse,
                                        .overtopped_volume = impacts_[b].overtopped_volume,
                                        .passed_volume = impacts_[b].passed_volume});

@@ -143,8 +143,8 @@ json impact_json(const std::string& id, const observe::BuildingImpact& impact, b
                 {"peak_force_kN", impact.peak_force / 1e3},
                 {"peak_impact_pressure_kPa", impact.peak_impact_pressure / 1e3},
                 {"peak_depth_m", impact.peak_depth},
-                {"peak_speed_mps", impact.peak_speed},
-                {"peak_dynamic_pressure_kPa", impact.peak_dynamic_pressure / 1e3},
+                {"peak_speed_mps", number_or_null<json>(impact.peak_speed)},
+                {"peak_dynamic_pressure_kPa", number_or_null<json>(impact.peak_dynamic_pressure / 1e3)},
                 {"impulse_kNs", impact.impulse / 1e3},
                 {"failed_s", number_or_null<json>(impact.failure_time)},
                 {"intensity", intensity != nullptr ? json(intensity->name) : json()}};
