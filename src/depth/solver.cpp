@@ -237,28 +237,11 @@ double Solver::volume() const {
 }
 
 double Solver::bytes_per_cell() const {
-    std::size_t bytes = unknown_.size();
-    for (const std::vector<float>* array : {&bed_,
-                                            &slope_x_,
-                                            &slope_y_,
-                                            &depth_,
-                                            &u_,
-                                            &v_,
-                                            &next_depth_,
-                                            &next_u_,
-                                            &next_v_,
-                                            &friction_,
-                                            &inverse_turbulence_,
-                                            &strength_,
-                                            &stem_drag_,
-                                            &structure_,
-                                            &inflow_.depth,
-                                            &inflow_.momentum_x,
-                                            &inflow_.momentum_y,
-                                            &inflow_.from_x,
-                                            &inflow_.from_y,
-                                            &passes_east_,
-                                            &passes_north_}) {
+    std::size_t bytes = unknown_.size() + (passes_east_.size() + passes_north_.size()) * sizeof(float);
+    for (const std::vector<float>* array :
+         {&bed_, &slope_x_, &slope_y_, &depth_, &u_, &v_, &next_depth_, &next_u_, &next_v_, &friction_,
+          &inverse_turbulence_, &strength_, &stem_drag_, &structure_, &inflow_.depth, &inflow_.momentum_x,
+          &inflow_.momentum_y, &inflow_.from_x, &inflow_.from_y}) {
         bytes += array->size() * sizeof(float);
     }
     return static_cast<double>(bytes) / static_cast<double>(geometry_.size());
