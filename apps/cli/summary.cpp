@@ -43,9 +43,9 @@ std::string buildings_text(const observe::Observation& observation) {
 }
 
 std::string barrier_text(const observe::BuildingImpact& barrier) {
-    return fmt::format("{}: peak force {:.0f} kN, {:.1f} m3 over it, {:.1f} m3 through openings, {:.1f} m3 held",
+    return fmt::format("{}: peak force {:.0f} kN, {:.1f} m3 over it, {:.1f} m3 through openings, {:.1f} m3 retained",
                        barrier.name, barrier.peak_force / 1000, barrier.overtopped_volume, barrier.passed_volume,
-                       barrier.held_volume);
+                       barrier.retained_volume);
 }
 
 std::string speed_text(double speed) {
@@ -206,8 +206,8 @@ std::string summary_json(const scene::Scene& scene, const run::RunResult& result
         {"wall_time_s", result.wall_time},
         {"real_time_factor", result.real_time_factor()},
         {"steps", result.steps},
-        {"particles", result.particles},
-        {"particle_spacing_m", result.particle_spacing},
+        {"particles", result.depth_averaged() ? nlohmann::ordered_json() : result.particles},
+        {"particle_spacing_m", result.depth_averaged() ? nlohmann::ordered_json() : result.particle_spacing},
         {"target_layers", scene.thinnest ? nlohmann::ordered_json(*scene.spec.solver.target_layers) : nullptr},
         {"thread_count", result.thread_count},
         {"volume_released_m3", seen.volume_released},
@@ -226,7 +226,7 @@ std::string summary_json(const scene::Scene& scene, const run::RunResult& result
         {"observations", observations},
         {"buildings_hit", buildings},
         {"structures", products::structures_json(seen)},
-        {"compression", products::compression_json(seen)},
+        {"compression", result.depth_averaged() ? nlohmann::ordered_json() : products::compression_json(seen)},
     };
     event.update(products::comparisons_json(comparisons));
     return event.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace);

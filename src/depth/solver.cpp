@@ -231,6 +231,8 @@ double Solver::advance_stage(bool second) {
     data.structure = pointer(structure_);
     data.inflow = {pointer(inflow_.depth), pointer(inflow_.momentum_x), pointer(inflow_.momentum_y),
                    pointer(inflow_.from_x), pointer(inflow_.from_y)};
+    data.passes_east = pointer(passes_east_);
+    data.passes_north = pointer(passes_north_);
 
     simd::parallel_ranges(segments_.size(), 1, [&](std::size_t first, std::size_t last) {
         for (std::size_t s = first; s < last; ++s) {
@@ -242,6 +244,7 @@ double Solver::advance_stage(bool second) {
         }
     });
     if (edges_ == Edges::continued) continue_rows(data.to);
+    count_passing(second);
     double lost = 0;
     for (std::size_t s = 0; s < segments_.size(); ++s) lost += lost_[s];
     return lost * geometry_.cell * geometry_.cell;
@@ -262,6 +265,7 @@ Status Solver::advance(double longest) {
         continue_rows(next_motion());
     }
     time_step_ = next_step(longest);
+    std::fill(passed_.begin(), passed_.end(), 0);
     if (!segments_.empty()) {
         // Heun's method takes the mean of what leaves in either stage.
         left_ += advance_stage(false) / 2;
@@ -294,7 +298,7 @@ double Solver::volume() const {
 }
 
 double Solver::bytes_per_cell() const {
-    std::size_t bytes = unknown_.size();
+    std::size_t bytes = unknown_.size() + (passes_east_.size() + passes_north_.size()) * sizeof(float);
     for (const std::vector<float>* array : {&bed_,
                                             &slope_x_,
                                             &slope_y_,

@@ -49,6 +49,12 @@ struct ActiveRow {
     const float *slope_x = nullptr, *slope_y = nullptr;        ///< of the ground
 };
 
+/// A face of the grid: east of a cell, or north of it.
+struct Face {
+    int column = 0, row = 0;
+    bool north = false;
+};
+
 /// Steps debris over fixed ground with Heun's method; a step costs what moves. Single precision, two copies of depth
 /// and velocity. Results have the same bits on any number of threads and any instruction set. Allocates nothing after
 /// construction.
@@ -81,6 +87,10 @@ class Solver {
     /// Turns ground of a cell into debris at rest above it: as much of `depth`, m, as elevations are rounded to.
     /// Returns that.
     double erode(int column, int row, double depth);
+    /// Counts from the next step on what passes faces between cells of the grid.
+    void watch(std::vector<Face> faces);
+    /// Volume that passed each of them in the last step, to the east or north, m3: what the cells gained by it.
+    [[nodiscard]] const std::vector<double>& passed() const { return passed_; }
     /// Gives the debris of a cell a velocity.
     void set_velocity(int column, int row, double u, double v);
 
@@ -172,6 +182,7 @@ class Solver {
     [[nodiscard]] double advance_stage(bool second);
     [[nodiscard]] double take_outflow(const Segment& segment, const Motion& motion);
     void continue_rows(const Motion& motion) const;
+    void count_passing(bool second);
     template <class F>
     void for_each_continued_row(const F& f) const;
 
@@ -196,6 +207,9 @@ class Solver {
         std::vector<float> depth, momentum_x, momentum_y, from_x, from_y;
         [[nodiscard]] auto all() { return std::array{&depth, &momentum_x, &momentum_y, &from_x, &from_y}; }
     } inflow_;                                         ///< see Inflow; empty: none so far
+    std::vector<Face> faces_;                          ///< that are watched
+    std::vector<double> passed_;                       ///< m3, by face
+    std::vector<float> passes_east_, passes_north_;    ///< by cell, see StageData; empty: none is watched
     std::vector<std::uint8_t> unknown_;                ///< by cell
     std::vector<std::uint8_t> has_unknown_, changed_;  ///< by tile
     std::vector<Segment> segments_;

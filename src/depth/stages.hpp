@@ -49,6 +49,7 @@ struct StageData {
     float highest_line = 0;            ///< m: no debris is faster than by a fall from there
     const float* structure = nullptr;  ///< by cell, 1: a structure stands there; null: none anywhere
     Inflow inflow{};
+    float *passes_east = nullptr, *passes_north = nullptr;  ///< m2/s through those faces of a cell; null: not wanted
 };
 
 struct Stages {

@@ -315,6 +315,10 @@ HWY_INLINE void update(const StageData& data, Scratch& scratch, int r, std::ptrd
     const Row& row = scratch.rows[static_cast<std::size_t>(r & 1)];
     const Faces &x = scratch.x, &south = scratch.y[static_cast<std::size_t>(r & 1)];
     const Faces& north = scratch.y[static_cast<std::size_t>((r + 1) & 1)];
+    if (data.passes_east != nullptr) {
+        load(x.mass, j).store(data.passes_east + i);
+        load(north.mass, j).store(data.passes_north + i);
+    }
     const L zero(0), half(0.5F), one(1), gravity(data.gravity), inverse_cell(data.inverse_cell);
     const L dt(data.time_step), per_cell = dt * inverse_cell;
     const L depth = L::load(data.from.depth + i), u = L::load(data.from.u + i), v = L::load(data.from.v + i);

@@ -28,6 +28,7 @@ ImpactRecorder::ImpactRecorder(const sim::Model& model, const sim::Ground& groun
     : edge_(outputs.impact_patch_edge),
       contact_size_(std::max(edge_, contact_spacings * model.particle_spacing)),
       least_depth_(outputs.arrival_depth),
+      deposited_speed_(outputs.deposited_speed),
       approach_(edge_),
       sums_(outputs.impact_filter_window) {
     follow(model, ground, state);
@@ -76,7 +77,7 @@ void ImpactRecorder::watch(const sim::Model& model, const sim::Ground& ground, c
                            std::size_t building) {
     const std::optional<params::BarrierSpec>& barrier = ground.buildings[building].barrier;
     if (!barrier) return;
-    crossings_[building] = std::make_unique<Overtopping>(model, ground.terrain, *barrier);
+    crossings_[building] = std::make_unique<Overtopping>(model, ground.terrain, *barrier, deposited_speed_);
     crossings_[building]->follow(state);
     crossings_[building]->after_step(state);  // initialises with the current positions
 }
@@ -153,9 +154,11 @@ void ImpactRecorder::take_approach(const sim::Model& model, const sim::Ground& g
     }
     for (std::size_t b = 0; b < impacts_.size(); ++b) {
         if (!impacts_[b].hit) continue;
-        impacts_[b].peak_depth = records_[b].peak_depth;
-        impacts_[b].peak_dynamic_pressure = records_[b].peak_dynamic_pressure;
-        impacts_[b].peak_speed = records_[b].peak_speed;
+        const Record& record = records_[b];
+        const bool measured = record.peak_depth >= least_depth_;  // thinner debris has no velocity
+        impacts_[b].peak_depth = record.peak_depth;
+        impacts_[b].peak_dynamic_pressure = measured ? record.peak_dynamic_pressure : never;
+        impacts_[b].peak_speed = measured ? record.peak_speed : never;
     }
 }
 
@@ -218,7 +221,7 @@ void ImpactRecorder::after_step(const sim::Model& model, const sim::Ground& grou
     }
     jumped_ = false;
     for (const std::size_t building : failed_) {
-        if (crossings_[building]) impacts_[building].held_volume = crossings_[building]->filling(debris).volume;
+        if (crossings_[building]) impacts_[building].retained_volume = crossings_[building]->filling(debris).volume;
         crossings_[building].reset();  // debris that passes from now on does not overtop it
     }
 }
@@ -227,19 +230,21 @@ void ImpactRecorder::add_row(const Debris& debris) {
     for (std::size_t b = 0; b < impacts_.size(); ++b) {
         BuildingImpact& impact = impacts_[b];
         if (!impact.hit) continue;
+        const double depth = records_[b].depth;
+        const bool too_thin = depth > 0 && depth < least_depth_;  // to have a velocity
         StructureSample sample{.time = debris.summary().time,
                                .force = force_on(records_[b]),
                                .impact_pressure = highest_pressure(records_[b]),
-                               .depth = records_[b].depth,
-                               .dynamic_pressure = records_[b].dynamic_pressure,
+                               .depth = depth,
+                               .dynamic_pressure = too_thin ? never : records_[b].dynamic_pressure,
                                .impulse = impact.impulse,
                                .overtopped_volume = impact.overtopped_volume,
                                .passed_volume = impact.passed_volume};
         if (crossings_[b]) {
             const Overtopping::Filling filling = crossings_[b]->filling(debris);
-            sample.held_volume = impact.held_volume = filling.volume;
+            sample.retained_volume = impact.retained_volume = filling.volume;
             sample.filling_height = filling.height;
-            impact.peak_held_volume = std::max(impact.peak_held_volume, filling.volume);
+            impact.peak_retained_volume = std::max(impact.peak_retained_volume, filling.volume);
             impact.peak_filling_height = std::max(impact.peak_filling_height, filling.height);
         }
         impact.history.push_back(sample);
@@ -249,7 +254,7 @@ void ImpactRecorder::add_row(const Debris& debris) {
 std::vector<BuildingImpact> ImpactRecorder::complete(const Debris& debris) const {
     std::vector<BuildingImpact> impacts = impacts_;
     for (std::size_t b = 0; b < impacts.size(); ++b) {
-        if (crossings_[b]) impacts[b].held_volume = crossings_[b]->filling(debris).volume;
+        if (crossings_[b]) impacts[b].retained_volume = crossings_[b]->filling(debris).volume;
     }
     return impacts;
 }

@@ -82,6 +82,7 @@ class ImpactRecorder {
     void take_overtopping(std::size_t building);
 
     double edge_, contact_size_, least_depth_;  // m
+    double deposited_speed_;                    // m/s
     WallPatches patches_;
     WallApproach approach_;
     MovingSums sums_;                           // impulse by structure, and per area by patch, of those hit

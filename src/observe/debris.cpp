@@ -106,7 +106,7 @@ void Debris::find_inside(const Extent& extent, bool released, std::vector<Placed
     for (std::uint32_t i = 0; i < state.count; ++i) {
         if (!rectangle.contains(state.position.x[i], state.position.y[i])) continue;
         if (released && state.held[i] != 0) continue;
-        found.push_back({state.position.at(i), state.id[i]});
+        found.push_back({state.position.at(i), state.id[i], length(state.velocity.at(i))});
     }
 }
 

@@ -7,6 +7,7 @@
 
 #include "observe/erosion.hpp"
 #include "observe/front_tracker.hpp"
+#include "observe/grid_flow.hpp"
 #include "observe/run_out.hpp"
 
 namespace talus::observe {
@@ -16,11 +17,6 @@ namespace {
 constexpr double thinnest_share = 0.1;
 /// So many parcels of equal volume stand for the debris where its run-out is measured as that of particles.
 constexpr double parcels = 20000;
-
-float speed_of(float u, float v, float slope_x, float slope_y) {
-    const float w = u * slope_x + v * slope_y;
-    return std::sqrt(u * u + v * v + w * w);
-}
 
 /// Debris as parcels of equal volume at the centres of its cells, on the ground.
 sim::State parcels_of(const depth::Solver& solver, const sim::Ground& ground, const Grid<float>& depth, double all,
@@ -51,7 +47,7 @@ sim::State parcels_of(const depth::Solver& solver, const sim::Ground& ground, co
 }  // namespace
 
 GridObserver::GridObserver(const depth::Solver& solver, terrain::FlowPath flow_path, const params::OutputSpec& outputs,
-                           std::vector<StructureCells> structures)
+                           GridStructures structures, double held)
     : outputs_(outputs),
       flow_path_(std::move(flow_path)),
       density_(solver.material().rest_density),
@@ -60,7 +56,8 @@ GridObserver::GridObserver(const depth::Solver& solver, terrain::FlowPath flow_p
       arrival_time_(solver.geometry(), std::numeric_limits<float>::quiet_NaN()),
       arrival_speed_(arrival_time_),
       released_(solver.geometry()),
-      chainage_(solver.geometry().size(), std::numeric_limits<float>::quiet_NaN()) {
+      chainage_(solver.geometry().size(), std::numeric_limits<float>::quiet_NaN()),
+      structures_(std::move(structures)) {
     const GridGeometry& g = solver.geometry();
     for (int row = 0; row < g.rows && !flow_path_.empty(); ++row) {
         for (int column = 0; column < g.columns; ++column) {
@@ -68,35 +65,15 @@ GridObserver::GridObserver(const depth::Solver& solver, terrain::FlowPath flow_p
             if (at) chainage_[g.index(column, row)] = static_cast<float>(at->chainage);
         }
     }
-    for (StructureCells& structure : structures) {
-        Structure s;
-        s.impact.name = structure.name;
-        s.impact.is_barrier = structure.is_barrier;
-        for (const std::size_t cell : structure.cells) {
-            const int column = static_cast<int>(cell % static_cast<std::size_t>(g.columns));
-            const int row = static_cast<int>(cell / static_cast<std::size_t>(g.columns));
-            for (const auto& [dx, dy] : {std::pair{-1, 0}, {1, 0}, {0, -1}, {0, 1}}) {
-                const int c = column + dx, r = row + dy;
-                if (c < 0 || r < 0 || c >= g.columns || r >= g.rows || !solver.known(c, r)) continue;
-                const std::size_t beside = g.index(c, r);
-                if (std::find(structure.cells.begin(), structure.cells.end(), beside) == structure.cells.end()) {
-                    s.beside.push_back(beside);
-                }
-            }
-        }
-        std::sort(s.beside.begin(), s.beside.end());
-        s.beside.erase(std::unique(s.beside.begin(), s.beside.end()), s.beside.end());
-        s.cells = std::move(structure);
-        structures_.push_back(std::move(s));
-    }
-    timeseries_.push_back(sample(solver, 0, 0));
+    timeseries_.push_back(sample(solver, held, 0));
 }
 
-void GridObserver::note_release(const depth::Solver& solver, const Grid<float>& depth, double volume) {
+void GridObserver::note_release(const depth::Solver& solver, const Grid<float>& depth, double volume, double held) {
     volume_released_ += volume;
     for (std::size_t cell = 0; cell < released_.values.size(); ++cell) released_.values[cell] += depth.values[cell];
     measure_cells(solver);
-    timeseries_.back() = sample(solver, timeseries_.back().volume_held, timeseries_.back().steps_per_second);
+    TimeSample& last = timeseries_.back();
+    if (last.time >= solver.time()) last = sample(solver, held, last.steps_per_second);
 }
 
 void GridObserver::watch(const depth::Solver& solver, const std::vector<terrain::Gauge>& gauges) {
@@ -148,46 +125,10 @@ void GridObserver::measure_cells(const depth::Solver& solver) {
     });
 }
 
-void GridObserver::measure_structures(const depth::Solver& solver) {
-    const GridGeometry& g = solver.geometry();
-    for (Structure& structure : structures_) {
-        BuildingImpact& impact = structure.impact;
-        StructureSample now;
-        now.time = solver.time();
-        for (const std::size_t cell : structure.beside) {
-            const int column = static_cast<int>(cell % static_cast<std::size_t>(g.columns));
-            const int row = static_cast<int>(cell / static_cast<std::size_t>(g.columns));
-            const double depth = solver.depth_at(column, row);
-            if (depth <= outputs_.arrival_depth) continue;
-            const double speed = std::hypot(solver.u_at(column, row), solver.v_at(column, row));
-            const double dynamic = density_ * speed * speed;
-            now.depth = std::max(now.depth, depth);
-            now.dynamic_pressure = std::max(now.dynamic_pressure, dynamic);
-            // Momentum flux and weight of the flow on the wall of this cell.
-            const double pressure = dynamic + density_ * solver.material().gravity * depth / 2;
-            now.impact_pressure = std::max(now.impact_pressure, pressure);
-            now.force += pressure * depth * g.cell;
-            impact.peak_speed = std::max(impact.peak_speed, speed);
-        }
-        if (now.depth <= 0) continue;
-        if (!impact.hit) impact.first_hit_time = now.time;
-        impact.hit = true;
-        impact.impulse += now.force * solver.time_step();
-        impact.peak_force = std::max(impact.peak_force, now.force);
-        impact.peak_impact_pressure = std::max(impact.peak_impact_pressure, now.impact_pressure);
-        impact.peak_depth = std::max(impact.peak_depth, now.depth);
-        impact.peak_dynamic_pressure = std::max(impact.peak_dynamic_pressure, now.dynamic_pressure);
-        now.impulse = impact.impulse;
-        if (impact.history.empty() || now.time >= impact.history.back().time + outputs_.sample_interval) {
-            impact.history.push_back(now);
-        }
-    }
-}
-
 void GridObserver::after_step(const depth::Solver& solver, double held, double steps_per_second) {
     measure_cells(solver);
-    measure_structures(solver);
     const bool row = solver.time() >= timeseries_.back().time + outputs_.sample_interval - 1e-9;
+    structures_.after_step(solver, row);
     read_gauges(solver, row);
     if (!row) return;
     const GridGeometry& g = solver.geometry();
@@ -271,10 +212,15 @@ TimeSample GridObserver::sample(const depth::Solver& solver, double held, double
     }
     s.time = solver.time();
     s.volume_held = held;
+    if (solver.steps() == 0) {  // nothing has been let go yet
+        s.volume_held += s.volume_moving + s.volume_deposited;
+        s.volume_moving = s.volume_deposited = 0;
+    }
     s.volume_left = solver.volume_left();
     s.volume_released = volume_released_ + held;
     s.volume_entrained = volume_entrained_;
     s.front_chainage = front_;
+    s.mean_compression = s.max_compression = s.squeezed_share = never;
     s.time_step = solver.time_step();
     s.steps_per_second = steps_per_second;
     return s;
@@ -366,9 +312,10 @@ Observation GridObserver::finish(const depth::Solver& solver, const sim::Ground&
     const FrontRecord front = front_record();
     o.front = front.samples();
     o.timeseries = timeseries_;
-    if (o.timeseries.back().time < solver.time()) o.timeseries.push_back(sample(solver, held, 0));
+    if (o.timeseries.back().time < solver.time())
+        o.timeseries.push_back(sample(solver, held, timeseries_.back().steps_per_second));
     o.gauges = gauges_.records();
-    for (const Structure& structure : structures_) o.buildings.push_back(structure.impact);
+    o.buildings = structures_.impacts(solver);
     o.volume_released = volume_released_ + held;
     o.erosion = measure_erosion(ground, flow_path_, outputs_.chainage_interval);
     o.volume_rounding = 1e-6;

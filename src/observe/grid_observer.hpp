@@ -1,13 +1,13 @@
 #pragma once
 
 #include <cstddef>
-#include <string>
 #include <vector>
 
 #include "core/grid.hpp"
 #include "depth/solver.hpp"
 #include "observe/front_tracker.hpp"
 #include "observe/gauges.hpp"
+#include "observe/grid_structures.hpp"
 #include "observe/map_accumulator.hpp"
 #include "observe/observation.hpp"
 #include "params/spec.hpp"
@@ -16,22 +16,15 @@
 
 namespace talus::observe {
 
-/// What of a structure stands on the cells of the grid.
-struct StructureCells {
-    std::string name;
-    bool is_barrier = false;
-    std::vector<std::size_t> cells{};  ///< of the grid
-};
-
 /// Watches a run of the depth-averaged model, for the same results as those of the particles. Maps have the cells of
 /// the grid. A front is where the map's arrivals are: the path's chainage beyond which no cell was reached earlier.
 class GridObserver {
   public:
     GridObserver(const depth::Solver& solver, terrain::FlowPath flow_path, const params::OutputSpec& outputs,
-                 std::vector<StructureCells> structures);
+                 GridStructures structures, double held);
 
-    /// Call after debris was added to the solver: its depth by cell, m, and volume, m3.
-    void note_release(const depth::Solver& solver, const Grid<float>& depth, double volume);
+    /// Call after debris was added to the solver: its depth by cell, m, its volume and what is still held, m3.
+    void note_release(const depth::Solver& solver, const Grid<float>& depth, double volume, double held);
     /// What came in or was entrained in the last step, m3; call it before after_step().
     void note_inflow(double volume) { volume_released_ += volume; }
     void note_entrainment(double volume) { volume_entrained_ += volume; }
@@ -57,14 +50,7 @@ class GridObserver {
     [[nodiscard]] Observation finish(const depth::Solver& solver, const sim::Ground& ground, double held) const;
 
   private:
-    struct Structure {
-        StructureCells cells;
-        std::vector<std::size_t> beside;  ///< cells that touch it
-        BuildingImpact impact;
-    };
-
     void measure_cells(const depth::Solver& solver);
-    void measure_structures(const depth::Solver& solver);
     void read_gauges(const depth::Solver& solver, bool row);
     [[nodiscard]] FrontRecord front_record() const;
     [[nodiscard]] HazardMaps maps(const depth::Solver& solver) const;
@@ -75,7 +61,7 @@ class GridObserver {
     Grid<float> peak_depth_, peak_speed_, arrival_time_, arrival_speed_;  ///< 0 and NaN: not reached
     Grid<float> released_;                                                ///< m, by cell
     std::vector<float> chainage_;                                         ///< by cell; NaN: not on the path
-    std::vector<Structure> structures_;
+    GridStructures structures_;
     GaugeRecorder gauges_;
     std::vector<TimeSample> timeseries_;
     double volume_released_ = 0, volume_entrained_ = 0, front_ = never;

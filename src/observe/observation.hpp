@@ -59,7 +59,7 @@ struct StructureSample {
     double impulse = 0;            ///< N s, of all debris so far
     double overtopped_volume = 0;  ///< m3, this and what follows of barriers only
     double passed_volume = 0;      ///< m3, through openings and meshes
-    double held_volume = 0;        ///< m3, upstream
+    double retained_volume = 0;    ///< m3, behind it, see retained_volume()
     double filling_height = 0;     ///< m, upstream at the face
 };
 
@@ -82,8 +82,8 @@ struct BuildingImpact {
     double overtopped_volume = 0;           ///< m3, over the crest and not back
     double first_overtopping_time = never;  ///< s
     double passed_volume = 0;               ///< m3, through openings and meshes
-    double held_volume = 0;                 ///< m3, upstream at the end
-    double peak_held_volume = 0;            ///< m3, of the samples
+    double retained_volume = 0;             ///< m3, behind it at the end, see retained_volume()
+    double peak_retained_volume = 0;        ///< m3, of the samples
     double peak_filling_height = 0;         ///< m, mean depth along the face where it was deepest, of the samples
 
     std::vector<StructureSample> history{};  ///< from the first hit on, at the times of the time series
@@ -114,7 +114,7 @@ struct TimeSample {
     double volume_released = 0;     ///< m3, until then, less the removed volume
     double volume_entrained = 0;    ///< m3, from the bed
     double front_chainage = never;  ///< m, of the moving front now; NaN: none on the path
-    double volume_held = 0;         ///< m3, in releases that have not started
+    double volume_held = 0;         ///< m3, in releases that have not started; all of them before the first step
     double volume_moving = 0;
     double volume_deposited = 0;
     double volume_left = 0;

@@ -29,6 +29,10 @@ TimeSample make_sample(const sim::Model& model, const Debris& debris, double dep
     sample.volume_held = totals.held * model.particle_volume();
     sample.volume_moving = totals.moving * model.particle_volume();
     sample.volume_deposited = totals.deposited * model.particle_volume();
+    if (state.step == 0) {  // nothing has been let go yet
+        sample.volume_held += sample.volume_moving + sample.volume_deposited;
+        sample.volume_moving = sample.volume_deposited = 0;
+    }
     sample.volume_left = state.outflow * model.particle_volume();
     sample.kinetic_energy = 0.5 * model.particle_mass() * totals.speed_squared;
     sample.momentum = model.particle_mass() * totals.speed;
@@ -37,7 +41,7 @@ TimeSample make_sample(const sim::Model& model, const Debris& debris, double dep
     sample.mean_compression = state.mean_compression;
     sample.max_compression = state.max_compression;
     sample.squeezed_share = state.squeezed_share;
-    sample.time_step = state.time_step;
+    sample.time_step = state.step > 0 ? state.time_step : 0;
     sample.steps_per_second = steps_per_second;
     return sample;
 }

@@ -3,100 +3,30 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
+#include <tuple>
 
+#include "observe/retention.hpp"
 #include "sim/physics/net.hpp"
 #include "terrain/barrier.hpp"
 
 namespace talus::observe {
-namespace {
-
-/// Highest ground under the line, world.
-double highest_ground(const terrain::Terrain& terrain, const std::vector<PlanPoint>& line) {
-    double highest = -std::numeric_limits<double>::infinity();
-    for (const PlanPoint& p : line) highest = std::max(highest, terrain.elevation_at(p));
-    return highest;
-}
-
-PlanPoint point_at(const std::vector<PlanPoint>& line, double chainage) {
-    for (std::size_t k = 0; k + 1 < line.size(); ++k) {
-        const PlanPoint &a = line[k], &b = line[k + 1];
-        const double length = std::hypot(b.x - a.x, b.y - a.y);
-        if (chainage <= length || k + 2 == line.size()) {
-            const double share = chainage / length;
-            return {a.x + share * (b.x - a.x), a.y + share * (b.y - a.y)};
-        }
-        chainage -= length;
-    }
-    return line.back();
-}
-
-}  // namespace
-
-Overtopping::Overtopping(const sim::Model& model, const terrain::Terrain& terrain, const params::BarrierSpec& shape)
-    : particle_volume_(model.particle_volume()),
+Overtopping::Overtopping(const sim::Model& model, const terrain::Terrain& terrain, const params::BarrierSpec& shape,
+                         double deposited_speed)
+    : line_(terrain, shape),
+      particle_volume_(model.particle_volume()),
       section_(4 * model.particle_spacing),
-      half_thickness_(shape.thickness / 2) {
-    const WorldPoint& origin = terrain.frame().origin;
-    const double height =
-        shape.crest_elevation ? *shape.crest_elevation - highest_ground(terrain, shape.line) : shape.height.value_or(0);
-    reach_ = std::max(5 * height, half_thickness_ + section_);
-    for (const PlanPoint& p : shape.line) {
-        const PlanPoint local{p.x - origin.x, p.y - origin.y};
-        if (line_.empty()) near_ = {local.x, local.y, local.x, local.y};
-        near_.include(local);
-        line_.push_back({static_cast<float>(local.x), static_cast<float>(local.y)});
-    }
-    for (const params::BarrierOpeningSpec& opening : shape.openings) {
-        const double ground = terrain.elevation_at(point_at(shape.line, opening.position));
-        openings_.push_back({opening.position - opening.width / 2, opening.position + opening.width / 2,
-                             shape.crest_elevation.value_or(ground + shape.height.value_or(0)) - origin.z});
-    }
-    if (shape.clearance) {  // the gap below follows the ground: a row of openings, a metre wide each
-        const double length = terrain::length_of(shape.line);
-        for (double chainage = 0; chainage < length; ++chainage) {
-            const double ground = terrain.elevation_at(point_at(shape.line, std::min(chainage + 0.5, length)));
-            openings_.push_back({chainage - 1e-3, chainage + 1, ground + *shape.clearance - origin.z});
-        }
-    }
+      deposited_speed_(deposited_speed) {
     if (shape.passing_share) {
         passing_share_ = static_cast<float>(*shape.passing_share);
         const double length = terrain::length_of(shape.line);
         for (double chainage = 0; chainage < length + 1; ++chainage) {
             const double ground = terrain.elevation_at(point_at(shape.line, std::min(chainage, length)));
-            crest_.push_back(shape.crest_elevation.value_or(ground + shape.height.value_or(0)) - origin.z);
+            crest_.push_back(shape.crest_elevation.value_or(ground + shape.height.value_or(0)) -
+                             terrain.frame().origin.z);
         }
     }
     // No particle moves farther in a step than a few spacings.
-    near_ = near_.grown(std::max(2.0, 4 * model.particle_spacing));
-}
-
-Overtopping::Crossing Overtopping::crossing(const Point& a, const Point& b) const {
-    const auto cross = [](const Point& p, const Point& q, const Point& r) {
-        return (static_cast<double>(q.x) - p.x) * (static_cast<double>(r.y) - p.y) -
-               (static_cast<double>(q.y) - p.y) * (static_cast<double>(r.x) - p.x);
-    };
-    Crossing found;
-    double chainage = 0;
-    for (std::size_t k = 0; k + 1 < line_.size(); ++k) {
-        const Point &p = line_[k], &q = line_[k + 1];
-        const double length = std::hypot(static_cast<double>(q.x) - p.x, static_cast<double>(q.y) - p.y);
-        // A point on the line counts as to its right; a bend belongs to the segment that begins there.
-        const bool left_before = cross(p, q, a) > 0, left_now = cross(p, q, b) > 0;
-        const double at_begin = cross(a, b, p), at_end = cross(a, b, q);
-        if (left_before != left_now && (at_begin > 0) != (at_end > 0)) {
-            found.net += left_before ? 1 : -1;
-            found.chainage = chainage + length * at_begin / (at_begin - at_end);
-        }
-        chainage += length;
-    }
-    return found;
-}
-
-bool Overtopping::in_opening(double chainage, double z) const {
-    return std::any_of(openings_.begin(), openings_.end(), [&](const Opening& opening) {
-        return chainage > opening.from && chainage < opening.to && z < opening.crest;
-    });
+    near_ = line_.extent().grown(std::max(2.0, 4 * model.particle_spacing));
 }
 
 bool Overtopping::in_mesh(std::uint32_t id, double chainage, double z) const {
@@ -122,14 +52,14 @@ void Overtopping::after_step(const Debris& debris, bool jumped) {
         track.last = now;
         track.step = calls_ + 1;
         if (!known || (before.x == now.x && before.y == now.y)) continue;
-        const Crossing crossed = crossing(before, now);
+        const BarrierLine::Crossing crossed = line_.crossing({before.x, before.y}, {now.x, now.y});
         if (crossed.net == 0) continue;
         Side& was = track.through ? through_ : over_;
         was.to_right -= track.net > 0;
         was.to_left -= track.net < 0;
         track.net = static_cast<std::int8_t>(std::clamp(track.net + crossed.net, -1, 1));
         const double z = particle.position.z;
-        track.through = in_opening(crossed.chainage, z) || in_mesh(particle.id, crossed.chainage, z);
+        track.through = z < line_.opening_crest(crossed.chainage) || in_mesh(particle.id, crossed.chainage, z);
         Side& is = track.through ? through_ : over_;
         is.to_right += track.net > 0;
         is.to_left += track.net < 0;
@@ -144,58 +74,68 @@ double Overtopping::beyond(const Side& counted) const {
     return static_cast<double>(std::max<std::int64_t>(0, all < 0 ? -net : net)) * particle_volume_;
 }
 
-Overtopping::Place Overtopping::place_of(double x, double y) const {
-    Place place;
-    place.distance = reach_;
-    double chainage = 0;
-    for (std::size_t k = 0; k + 1 < line_.size(); ++k) {
-        const double px = line_[k].x, py = line_[k].y, dx = line_[k + 1].x - px, dy = line_[k + 1].y - py;
-        const double length = std::hypot(dx, dy), along = ((x - px) * dx + (y - py) * dy) / length;
-        const double across = (dx * (y - py) - dy * (x - px)) / length;
-        // Outside a bend, the position may be beside neither segment.
-        const double past = std::max({0.0, -along, along - length});
-        const bool at_end = (k == 0 && along < 0) || (k + 2 == line_.size() && along > length);
-        const double distance = std::hypot(across, past);
-        if (!at_end && distance < place.distance) {
-            place = {chainage + std::clamp(along, 0.0, length), distance, across > 0 ? 1 : -1};
-        }
-        chainage += length;
+/// On one side of the line, in bins two spacings wide, so that debris a particle thick has no gaps.
+std::vector<DebrisColumn> Overtopping::columns_of(const std::vector<PlacedParticle>& particles, int side) const {
+    const double size = section_ / 2, half_spacing = section_ / 8;
+    struct Placed {
+        std::int32_t row, column;
+        float z, speed, distance;
+    };
+    std::vector<Placed> all;
+    for (const PlacedParticle& particle : particles) {
+        const LocalPoint& p = particle.position;
+        const BarrierLine::Place place = line_.place_of({p.x, p.y});
+        // What lies on its crest is not behind it.
+        if (place.side != side || place.distance < line_.half_thickness()) continue;
+        all.push_back({static_cast<std::int32_t>(std::floor(p.y / size)),
+                       static_cast<std::int32_t>(std::floor(p.x / size)), p.z, particle.speed,
+                       static_cast<float>(place.distance - line_.half_thickness())});
     }
-    return place;
+    // Wholly in order, so that sums do not depend on the order of the particles.
+    std::sort(all.begin(), all.end(), [](const Placed& a, const Placed& b) {
+        return std::tie(a.row, a.column, a.z, a.speed, a.distance) <
+               std::tie(b.row, b.column, b.z, b.speed, b.distance);
+    });
+    std::vector<DebrisColumn> columns;
+    for (std::size_t first = 0, last = 0; first < all.size(); first = last) {
+        double speed = 0, nearest = all[first].distance;
+        for (; last < all.size() && all[last].row == all[first].row && all[last].column == all[first].column; ++last) {
+            speed += all[last].speed;
+            nearest = std::min(nearest, double{all[last].distance});
+        }
+        const auto count = static_cast<double>(last - first);
+        const double volume = count * particle_volume_, bottom = all[first].z - half_spacing;
+        columns.push_back({all[first].column, all[first].row, volume, bottom, bottom + volume / (size * size),
+                           speed < count * deposited_speed_, nearest < size});
+    }
+    return columns;
 }
 
 Overtopping::Filling Overtopping::filling(const Debris& debris) const {
-    double length = 0;
-    for (std::size_t k = 0; k + 1 < line_.size(); ++k) {
-        length += std::hypot(static_cast<double>(line_[k + 1].x) - line_[k].x,
-                             static_cast<double>(line_[k + 1].y) - line_[k].y);
-    }
-    const auto sections = static_cast<std::size_t>(std::max(1.0, std::floor(length / section_)));
-    struct Beside {
-        std::int64_t particles = 0;
-        std::vector<std::int64_t> at_face;  // by section
-    };
-    std::array<Beside, 2> sides;  // left, right
-    for (Beside& side : sides) side.at_face.resize(sections);
     std::vector<PlacedParticle> around;
-    debris.find_inside(near_.grown(reach_), true, around);
+    debris.find_inside(near_.grown(line_.half_thickness()), true, around);
+    const auto sections = static_cast<std::size_t>(std::max(1.0, std::floor(line_.length() / section_)));
+    std::array<std::vector<std::int64_t>, 2> at_face;  // left, right; by section
+    for (auto& side : at_face) side.resize(sections);
+    bool touches = false;
     for (const PlacedParticle& particle : around) {
-        const double x = particle.position.x, y = particle.position.y;
-        const Place place = place_of(x, y);
-        if (place.side == 0) continue;
-        Beside& side = sides[place.side > 0 ? 0 : 1];
-        ++side.particles;
-        if (place.distance < half_thickness_ || place.distance >= half_thickness_ + section_) continue;
-        const auto section = static_cast<std::size_t>(place.chainage / length * static_cast<double>(sections));
-        ++side.at_face[std::min(section, sections - 1)];
+        const BarrierLine::Place place = line_.place_of({particle.position.x, particle.position.y});
+        const double off = place.distance - line_.half_thickness();
+        if (place.side == 0 || off < 0 || off >= section_) continue;
+        touches = true;
+        const auto section = static_cast<std::size_t>(place.chainage / line_.length() * static_cast<double>(sections));
+        ++at_face.at(place.side > 0 ? 0 : 1)[std::min(section, sections - 1)];
     }
+    if (!touches) return {};
+    constexpr double everywhere = 1e9;
+    debris.find_inside({-everywhere, -everywhere, everywhere, everywhere}, true, around);
+    const double on_left = retained_volume(columns_of(around, 1)), on_right = retained_volume(columns_of(around, -1));
     const std::int64_t gone = over_.to_right + through_.to_right - over_.to_left - through_.to_left;
-    const bool left = gone != 0 ? gone > 0 : sides[0].particles >= sides[1].particles;
-    const Beside& upstream = sides[left ? 0 : 1];
-    const double area = section_ * length / static_cast<double>(sections);
-    const auto deepest = *std::max_element(upstream.at_face.begin(), upstream.at_face.end());
-    return {static_cast<double>(upstream.particles) * particle_volume_,
-            static_cast<double>(deepest) * particle_volume_ / area};
+    const bool left = gone != 0 ? gone > 0 : on_left >= on_right;
+    const auto& upstream = at_face.at(left ? 0 : 1);
+    const double area = section_ * line_.length() / static_cast<double>(sections);
+    return {left ? on_left : on_right,
+            static_cast<double>(*std::max_element(upstream.begin(), upstream.end())) * particle_volume_ / area};
 }
 
 }  // namespace talus::observe

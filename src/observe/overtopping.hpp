@@ -5,8 +5,10 @@
 #include <vector>
 
 #include "core/geometry.hpp"
+#include "observe/barrier_line.hpp"
 #include "observe/debris.hpp"
 #include "observe/observation.hpp"
+#include "observe/retention.hpp"
 #include "sim/ground.hpp"
 #include "sim/model.hpp"
 #include "sim/state.hpp"
@@ -18,7 +20,9 @@ namespace talus::observe {
 /// its ends does not count. Only debris in a rectangle around the line is examined.
 class Overtopping {
   public:
-    Overtopping(const sim::Model& model, const terrain::Terrain& terrain, const params::BarrierSpec& shape);
+    /// `deposited_speed`: slower debris is at rest, m/s.
+    Overtopping(const sim::Model& model, const terrain::Terrain& terrain, const params::BarrierSpec& shape,
+                double deposited_speed);
 
     /// Reserves memory for the particles, so that no step has to.
     void follow(const sim::State& state) { tracks_.resize(std::max<std::size_t>(tracks_.size(), state.seeded)); }
@@ -32,7 +36,7 @@ class Overtopping {
 
     /// Debris upstream of a barrier: on the side from which it has crossed, or where there is more of it.
     struct Filling {
-        double volume = 0;  ///< m3 within five heights of the line and between its ends
+        double volume = 0;  ///< m3, see retained()
         double height = 0;  ///< m, the mean depth of the deepest of the sections, four spacings square, along the face
     };
     [[nodiscard]] Filling filling(const Debris& debris) const;
@@ -50,29 +54,15 @@ class Overtopping {
         std::int8_t net = 0;     ///< crossings from left to right less those back
         bool through = false;    ///< an opening or a mesh
     };
-    struct Opening {
-        double from, to, crest;  ///< m along the line; local z
-    };
-    struct Crossing {
-        int net = 0;          ///< 1 from the line's left to its right, -1 back
-        double chainage = 0;  ///< m
-    };
-    struct Place {
-        double chainage = 0, distance = 0;
-        int side = 0;  ///< 1 left, -1 right, 0: not beside the line
-    };
-    [[nodiscard]] Crossing crossing(const Point& a, const Point& b) const;
-    [[nodiscard]] Place place_of(double x, double y) const;
-    [[nodiscard]] bool in_opening(double chainage, double z) const;
+    [[nodiscard]] std::vector<DebrisColumn> columns_of(const std::vector<PlacedParticle>& particles, int side) const;
     [[nodiscard]] bool in_mesh(std::uint32_t id, double chainage, double z) const;
     [[nodiscard]] double beyond(const Side& counted) const;
 
-    std::vector<Point> line_;  // local
-    std::vector<Opening> openings_;
+    BarrierLine line_;
     float passing_share_ = 0;    // of a net
     std::vector<double> crest_;  // of a net, local z, by metres along the line
     Extent near_;                // local
-    double particle_volume_ = 0, reach_ = 0, section_ = 0, half_thickness_ = 0;
+    double particle_volume_ = 0, section_ = 0, deposited_speed_ = 0;
     std::vector<Track> tracks_;  // by particle id
     std::vector<PlacedParticle> inside_;
     Side over_, through_;

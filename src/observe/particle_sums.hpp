@@ -72,6 +72,7 @@ struct WallParticle {
 struct PlacedParticle {
     LocalPoint position;
     std::uint32_t id = 0;
+    float speed = 0;  ///< m/s
 };
 
 /// A local plan rectangle.

@@ -2,12 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace talus::observe {
 namespace {
 
 int parts_of(double length, double edge) {
-    return std::max(1, static_cast<int>(length / edge));
+    return std::max(1, static_cast<int>(length / edge + 1e-6));  // three metres less rounding are three parts
 }
 
 /// Twice the signed area: positive where a ring runs counter-clockwise.
@@ -18,6 +19,19 @@ double turning(const Ring& ring) {
         twice += (a.x - ring[0].x) * (b.y - ring[0].y) - (b.x - ring[0].x) * (a.y - ring[0].y);
     }
     return twice;
+}
+
+double roof_of(const terrain::Building& building, std::size_t part) {
+    return building.part_roof_elevations.empty() ? building.roof_elevation : building.part_roof_elevations[part];
+}
+
+/// The highest roof of a building at a place, world; minus infinity beside it.
+double roof_at(const terrain::Building& building, const PlanPoint& p) {
+    double roof = -std::numeric_limits<double>::infinity();
+    for (std::size_t part = 0; part < building.footprint.size(); ++part) {
+        if (roof_of(building, part) > roof && contains(building.footprint[part], p)) roof = roof_of(building, part);
+    }
+    return roof;
 }
 
 }  // namespace
@@ -31,14 +45,13 @@ WallPatches::WallPatches(const terrain::Terrain& terrain, const std::vector<terr
         if (!stands(building)) continue;
         for (std::size_t p = 0; p < building.footprint.size(); ++p) {
             const Polygon& part = building.footprint[p];
-            const double elevation =
-                building.part_roof_elevations.empty() ? building.roof_elevation : building.part_roof_elevations[p];
+            const double elevation = roof_of(building, p);
             if (!std::isfinite(elevation)) continue;
             const double clearance = building.barrier ? building.barrier->clearance.value_or(0) : 0;
             const int index = static_cast<int>(b);
-            add_walls(terrain, part.outer, false, clearance, elevation - origin_z, index);
+            add_walls(terrain, building, part.outer, false, clearance, elevation - origin_z, index);
             for (const Ring& hole : part.holes) {
-                add_walls(terrain, hole, true, clearance, elevation - origin_z, index);
+                add_walls(terrain, building, hole, true, clearance, elevation - origin_z, index);
             }
             add_roof(terrain, part, elevation - origin_z, index);
         }
@@ -57,8 +70,8 @@ void WallPatches::add_column(Column column, double height) {
 }
 
 /// `clearance` of the wall's foot above the ground, m.
-void WallPatches::add_walls(const terrain::Terrain& terrain, const Ring& ring, bool hole, double clearance, double roof,
-                            int building) {
+void WallPatches::add_walls(const terrain::Terrain& terrain, const terrain::Building& of, const Ring& ring, bool hole,
+                            double clearance, double roof, int building) {
     const LocalFrame& frame = terrain.frame();
     const bool turned = (turning(ring) < 0) != hole;  // the solid must be on the left
     for (std::size_t i = 0; i < ring.size(); ++i) {
@@ -73,7 +86,13 @@ void WallPatches::add_walls(const terrain::Terrain& terrain, const Ring& ring, b
             const double x = a.x - frame.origin.x + k * width * along_x;
             const double y = a.y - frame.origin.y + k * width * along_y;
             const double ground = terrain.sample(x + width / 2 * along_x, y + width / 2 * along_y).height + clearance;
-            const double foot = ground < roof - 1e-3 ? ground : roof - edge_;  // or buried
+            double foot = ground < roof - 1e-3 ? ground : roof - edge_;  // or buried
+            // Where parts of a structure meet there is a wall only above the lower one.
+            constexpr double off = 0.02;  // m
+            const PlanPoint outside{a.x + (k + 0.5) * width * along_x + off * along_y,
+                                    a.y + (k + 0.5) * width * along_y - off * along_x};
+            foot = std::max(foot, roof_at(of, outside) - frame.origin.z);
+            if (!(foot < roof - 1e-3)) continue;
             add_column({x, y, foot, along_x, along_y, k * width, length, width, 0, 0, 0, building, 0, false},
                        roof - foot);
         }

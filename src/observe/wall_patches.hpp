@@ -75,8 +75,8 @@ class WallPatches {
     }
 
   private:
-    void add_walls(const terrain::Terrain& terrain, const Ring& ring, bool hole, double clearance, double roof,
-                   int building);
+    void add_walls(const terrain::Terrain& terrain, const terrain::Building& of, const Ring& ring, bool hole,
+                   double clearance, double roof, int building);
     void add_roof(const terrain::Terrain& terrain, const Polygon& part, double roof, int building);
     void add_column(Column column, double height);
     void fill_bins(double reach);

@@ -20,9 +20,11 @@ std::string header(const run::Comparison& comparison) {
 }
 
 void add_cost(Csv& csv, const run::RunResult& result) {
-    csv.row({static_cast<double>(result.particles), result.particle_spacing, static_cast<double>(result.steps),
-             result.simulated_time, result.wall_time, result.observation.compression.worst_mean,
-             result.observation.compression.worst_squeezed_share});
+    const auto of_particles = [&](double value) { return result.depth_averaged() ? observe::never : value; };
+    const observe::Compression& c = result.observation.compression;
+    csv.row({of_particles(result.particles), of_particles(result.particle_spacing), static_cast<double>(result.steps),
+             result.simulated_time, result.wall_time, of_particles(c.worst_mean),
+             of_particles(c.worst_squeezed_share)});
 }
 
 std::string outcome(const run::Comparison& comparison, const run::Comparison::Row& row) {

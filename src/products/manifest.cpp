@@ -75,13 +75,15 @@ Json resolved(const scene::Scene& scene, const run::RunResult& result) {
                            {"volume_by_the_end_m3", inflow.volume_until(result.simulated_time)}});
         if (inflow.has_density()) inflows.back()["mass_kg"] = inflow.mass_until(inflow.hydrograph.back().time);
     }
-    return {{"model", result.depth_averaged() ? "depth_averaged" : "particles"},
-            {"grid_cell_m", result.grid_cell},
-            {"particle_spacing_m", result.particle_spacing},
-            {"support_radius_m", result.support_radius},
-            {"particle_count", result.particles},
-            {"viscosity", result.viscosity},
-            {"kinematic_viscosity_m2ps", result.kinematic_viscosity},
+    const bool flat = result.depth_averaged();
+    const auto of_particles = [&](auto value) { return flat ? Json() : Json(value); };
+    return {{"model", flat ? "depth_averaged" : "particles"},
+            {"grid_cell_m", flat ? Json(result.grid_cell) : Json()},
+            {"particle_spacing_m", of_particles(result.particle_spacing)},
+            {"support_radius_m", of_particles(result.support_radius)},
+            {"particle_count", of_particles(result.particles)},
+            {"viscosity", of_particles(result.viscosity)},
+            {"kinematic_viscosity_m2ps", of_particles(result.kinematic_viscosity)},
             {"map_cell_m", result.map_cell},
             {"smallest_time_step_s", result.smallest_time_step},
             {"largest_time_step_s", result.largest_time_step},
@@ -198,11 +200,12 @@ Json performance(const run::RunResult& result) {
                           {"per_step_ms", 1e3 * seconds * per_step},
                           {"share", seconds * per_wall}});
     };
-    for (std::size_t i = 0; i < sim::stage_count; ++i) {
+    // The depth-averaged model does not time its stages.
+    for (std::size_t i = 0; i < sim::stage_count && !result.depth_averaged(); ++i) {
         add(sim::step_stages[i].name, result.stage_times.seconds[i]);
         rest -= result.stage_times.seconds[i];
     }
-    add("other", std::max(0.0, rest));
+    if (!result.depth_averaged()) add("other", std::max(0.0, rest));
     return {{"simulated_time_s", result.simulated_time},
             {"wall_time_s", result.wall_time},
             {"real_time_factor", result.real_time_factor()},

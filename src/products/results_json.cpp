@@ -34,9 +34,10 @@ Json variant_json(const run::Comparison& comparison, const run::Comparison::Row&
     }
     const run::RunResult& result = *row.run.result;
     variant["values"] = values;
-    variant["compression"] = compression_json(result.observation);
-    variant["particles"] = result.particles;
-    variant["particle_spacing_m"] = result.particle_spacing;
+    const bool flat = result.depth_averaged();
+    variant["compression"] = flat ? Json() : compression_json(result.observation);
+    variant["particles"] = flat ? Json() : Json(result.particles);
+    variant["particle_spacing_m"] = flat ? Json() : Json(result.particle_spacing);
     variant["steps"] = result.steps;
     variant["simulated_time_s"] = result.simulated_time;
     variant["wall_time_s"] = result.wall_time;
@@ -108,8 +109,8 @@ Json structures_json(const observe::Observation& observation) {
             entry["overtopped_m3"] = b.overtopped_volume;
             entry["first_overtopped_s"] = b.first_overtopping_time;
             entry["passed_m3"] = b.passed_volume;
-            entry["held_m3"] = b.held_volume;
-            entry["peak_held_m3"] = b.peak_held_volume;
+            entry["retained_m3"] = b.retained_volume;
+            entry["peak_retained_m3"] = b.peak_retained_volume;
             entry["peak_filling_height_m"] = b.peak_filling_height;
         }
         list.push_back(entry);

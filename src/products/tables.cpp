@@ -40,7 +40,7 @@ std::string building_table(const scene::Scene& scene, const observe::Observation
         "name,hit,first_hit_time_s,peak_force_kN,peak_impact_pressure_kPa,peak_dynamic_pressure_kPa,peak_depth_m,"
         "filter_window_s,patch_edge_m,height_m,height_assumed,kind,impulse_kNs,failed_s,overtopped_m3,first_overtopped_"
         "s,passed_m3,"
-        "held_m3,peak_held_m3,peak_filling_height_m,removed_time_s,peak_speed_mps,intensity",
+        "retained_m3,peak_retained_m3,peak_filling_height_m,removed_time_s,peak_speed_mps,intensity",
         changed);
     const report::IntensityGuideline& guideline = report::intensity_guideline(scene.spec.outputs.intensity_guideline);
     for (std::size_t i = 0; i < observation.buildings.size(); ++i) {
@@ -55,8 +55,8 @@ std::string building_table(const scene::Scene& scene, const observe::Observation
         csv.word(kind_of(b)).number(b.impulse / 1e3).number(b.failure_time);
         const auto of_barrier = [&](double value) { return b.is_barrier ? value : observe::never; };
         csv.number(of_barrier(b.overtopped_volume)).number(b.first_overtopping_time);
-        csv.number(of_barrier(b.passed_volume)).number(of_barrier(b.held_volume));
-        csv.number(of_barrier(b.peak_held_volume)).number(of_barrier(b.peak_filling_height));
+        csv.number(of_barrier(b.passed_volume)).number(of_barrier(b.retained_volume));
+        csv.number(of_barrier(b.peak_retained_volume)).number(of_barrier(b.peak_filling_height));
         csv.number(b.removed_time).number(b.peak_speed);
         const report::IntensityClass* intensity = guideline.class_of(b);
         csv.word(intensity != nullptr ? intensity->name : "");
@@ -69,7 +69,7 @@ std::string building_table(const scene::Scene& scene, const observe::Observation
 std::string structure_table(const observe::Observation& observation, std::string_view changed) {
     Csv csv(
         "name,time_s,force_kN,impact_pressure_kPa,depth_m,dynamic_pressure_kPa,impulse_kNs,overtopped_m3,passed_m3,"
-        "held_m3,filling_height_m",
+        "retained_m3,filling_height_m",
         changed);
     for (const observe::BuildingImpact& b : observation.buildings) {
         const auto of_barrier = [&](double value) { return b.is_barrier ? value : observe::never; };
@@ -77,7 +77,7 @@ std::string structure_table(const observe::Observation& observation, std::string
             csv.word(b.name).number(s.time).number(s.force / 1e3).number(s.impact_pressure / 1e3).number(s.depth);
             csv.number(s.dynamic_pressure / 1e3).number(s.impulse / 1e3);
             csv.number(of_barrier(s.overtopped_volume)).number(of_barrier(s.passed_volume));
-            csv.number(of_barrier(s.held_volume)).number(of_barrier(s.filling_height));
+            csv.number(of_barrier(s.retained_volume)).number(of_barrier(s.filling_height));
             csv.end_row();
         }
     }
@@ -96,9 +96,11 @@ std::string time_table(const observe::Observation& observation, std::string_view
     for (const observe::TimeSample& s : observation.timeseries) {
         const double balance = s.volume_released + s.volume_entrained -
                                (s.volume_held + s.volume_moving + s.volume_deposited + s.volume_left);
+        const auto after_a_step = [&](double value) { return s.time_step > 0 ? value : observe::never; };
         csv.row({s.time, s.front_chainage, s.volume_entrained, s.volume_held, s.volume_moving, s.volume_deposited,
                  s.volume_left, balance, s.kinetic_energy, s.potential_energy, s.momentum, s.largest_speed,
-                 s.mean_compression, s.max_compression, s.squeezed_share, s.time_step, s.steps_per_second});
+                 after_a_step(s.mean_compression), after_a_step(s.max_compression), after_a_step(s.squeezed_share),
+                 after_a_step(s.time_step), after_a_step(s.steps_per_second)});
     }
     return csv.text();
 }

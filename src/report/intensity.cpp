@@ -60,7 +60,8 @@ int IntensityGuideline::class_of(double depth, double speed) const {
 }
 
 const IntensityClass* IntensityGuideline::class_of(const observe::BuildingImpact& impact) const {
-    const int found = impact.hit ? class_of(impact.peak_depth, impact.peak_speed) : 0;
+    const double speed = std::isnan(impact.peak_speed) ? 0 : impact.peak_speed;  // of debris too thin to have one
+    const int found = impact.hit ? class_of(impact.peak_depth, speed) : 0;
     return found > 0 ? &classes[static_cast<std::size_t>(found) - 1] : nullptr;
 }
 

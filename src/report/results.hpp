@@ -11,7 +11,7 @@
 /// The content of reports as data: results.json, described in docs/results.md.
 namespace talus::report {
 
-constexpr int results_version = 2;
+constexpr int results_version = 3;
 
 /// The head of every results.json: `format`, version, program and time; then, if given, the scene's description.
 [[nodiscard]] Json results_head(std::string_view format);

@@ -49,6 +49,8 @@ Json wall_time(const run::RunResult& result) {
 }
 
 Json cost_of(const run::RunResult& result) {
+    if (result.depth_averaged())
+        return {{"compression", nullptr}, {"particles", nullptr}, {"wall_time_s", wall_time(result)}};
     const observe::Compression& c = result.observation.compression;
     return {
         {"compression", fmt::format("{} / {}", fixed(100 * c.worst_mean, 2), fixed(100 * c.worst_squeezed_share, 1))},

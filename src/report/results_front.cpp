@@ -228,8 +228,10 @@ Json time_chart(const run::RunResult& result) {
         speeds.include(s.largest_speed);
         mean_compression.push_back(100 * s.mean_compression);
         squeezed.push_back(100 * s.squeezed_share);
-        compressions.include(mean_compression.back());
-        compressions.include(squeezed.back());
+        if (!result.depth_averaged()) {
+            compressions.include(mean_compression.back());
+            compressions.include(squeezed.back());
+        }
         zero.push_back(0);
         deposited.push_back(s.volume_deposited);
         moving.push_back(deposited.back() + s.volume_moving);

@@ -63,12 +63,12 @@ Json net_balances(const std::vector<observe::BuildingImpact>& impacts) {
     Json list = Json::array();
     for (const observe::BuildingImpact& net : impacts) {
         if (!net.hit || std::isnan(net.passing_share)) continue;
-        const double all = net.held_volume + net.passed_volume + net.overtopped_volume;
+        const double all = net.retained_volume + net.passed_volume + net.overtopped_volume;
         list.push_back({{"name", name_of(net)},
                         {"passing_percent", 100 * net.passing_share},
                         {"arrived_m3", all},
-                        {"held_m3", net.held_volume},
-                        {"held_percent", all > 0 ? Json(100 * net.held_volume / all) : Json()},
+                        {"retained_m3", net.retained_volume},
+                        {"retained_percent", all > 0 ? Json(100 * net.retained_volume / all) : Json()},
                         {"passed_m3", net.passed_volume},
                         {"overtopped_m3", net.overtopped_volume},
                         {"peak_force_kN", net.peak_force / 1e3}});
@@ -76,7 +76,7 @@ Json net_balances(const std::vector<observe::BuildingImpact>& impacts) {
     return list;
 }
 
-/// Volumes held by nets, passing them and overtopping them, over time.
+/// Volumes retained by nets, passing them and overtopping them, over time.
 Json net_chart(const run::RunResult& result) {
     std::vector<const observe::BuildingImpact*> nets;
     for (const observe::BuildingImpact& impact : result.observation.buildings) {
@@ -87,22 +87,22 @@ Json net_chart(const run::RunResult& result) {
     if (nets.size() > max_nets) nets.resize(max_nets);
     if (nets.empty()) return {};
     constexpr double step = 270;
-    Chart chart{"What nets held and let through", 1000, step * static_cast<double>(nets.size()) + 20, {}};
+    Chart chart{"What nets retained and let through", 1000, step * static_cast<double>(nets.size()) + 20, {}};
     for (const observe::BuildingImpact* net : nets) {
         ValueRange time{0, 0}, volume{0, 1e-3};
-        std::vector<double> t, held, through, over;
+        std::vector<double> t, retained, through, over;
         for (const observe::StructureSample& s : net->history) {
             t.push_back(s.time);
-            held.push_back(s.held_volume);
+            retained.push_back(s.retained_volume);
             through.push_back(s.passed_volume);
             over.push_back(s.overtopped_volume);
             time.include(s.time);
-            for (const double value : {held.back(), through.back(), over.back()}) volume.include(value);
+            for (const double value : {retained.back(), through.back(), over.back()}) volume.include(value);
         }
         volume.high *= 1.05;
         Plot plot(66, 34 + step * static_cast<double>(chart.plots.size()), 640, 190, time, volume);
         plot.axes("time, s", "volume, m³");
-        plot.line(t, held, "series v0", "held");
+        plot.line(t, retained, "series v0", "retained");
         plot.line(t, through, "series v1", "through");
         plot.line(t, over, "series v2", "over");
         if (!std::isnan(net->failure_time)) plot.vertical(net->failure_time, "toe-line");
@@ -114,20 +114,18 @@ Json net_chart(const run::RunResult& result) {
 
 Json building_rows(const scene::Scene& scene, const run::RunResult& result, std::vector<std::size_t> hit) {
     const auto& impacts = result.observation.buildings;
-    const bool flat = result.depth_averaged();
     std::stable_sort(hit.begin(), hit.end(), [&](std::size_t a, std::size_t b) {
         return impacts[a].peak_impact_pressure > impacts[b].peak_impact_pressure;
     });
     const IntensityGuideline& guideline = intensity_guideline(scene.spec.outputs.intensity_guideline);
-    Json rows = table(
-        {{"name", "Building", ""},
-         {"first_hit_s", "First hit", "s", "f1"},
-         {"peak_force_kN", "Peak force", "kN", "s3"},
-         {"peak_impact_pressure_kPa", "Impact pressure", flat ? "kPa" : "kPa, highest patch", "s3", "", "–", true},
-         {"peak_dynamic_pressure_kPa", "Dynamic pressure", flat ? "kPa, ρv²" : "kPa, ρv² to the wall", "s3"},
-         {"peak_depth_m", "Depth at walls", "m", "f2"},
-         {"intensity", "Intensity", guideline.name},
-         {"height_m", "Height", "m", "f1"}});
+    Json rows = table({{"name", "Building", ""},
+                       {"first_hit_s", "First hit", "s", "f1"},
+                       {"peak_force_kN", "Peak force", "kN", "s3"},
+                       {"peak_impact_pressure_kPa", "Impact pressure", "kPa, highest patch", "s3", "", "–", true},
+                       {"peak_dynamic_pressure_kPa", "Dynamic pressure", "kPa, ρv² to the wall", "s3"},
+                       {"peak_depth_m", "Depth at walls", "m", "f2"},
+                       {"intensity", "Intensity", guideline.name},
+                       {"height_m", "Height", "m", "f1"}});
     for (std::size_t k = 0; k < std::min(max_rows, hit.size()); ++k) {
         const observe::BuildingImpact& b = impacts[hit[k]];
         const IntensityClass* intensity = guideline.class_of(b);
@@ -180,16 +178,12 @@ Json barriers(const run::RunResult& result) {
                                        {"peak_force_kN", "Peak force", "kN", "s3"},
                                        {"peak_impact_pressure_kPa", "Impact pressure", "kPa", "s3"},
                                        {"impulse_kNs", "Impulse", "kN s", "s3"}};
-        if (result.depth_averaged()) {  // which does not measure what passes a barrier
-            columns.push_back({"peak_depth_m", "Depth at the barrier", "m", "f2"});
-        } else {
-            columns.insert(columns.end(), {{"overtopped_m3", "Over the crest", "m³", "f1", "", "–", true},
-                                           {"first_overtopped_s", "First over", "s", "f1"},
-                                           {"passed_m3", "Through openings and meshes", "m³", "f1"},
-                                           {"held_m3", "Held at the end", "m³", "f1"},
-                                           {"peak_held_m3", "Held at most", "m³", "f1"},
-                                           {"peak_filling_height_m", "Filled at most", "m", "f2"}});
-        }
+        columns.insert(columns.end(), {{"overtopped_m3", "Over the crest", "m³", "f1", "", "–", true},
+                                       {"first_overtopped_s", "First over", "s", "f1"},
+                                       {"passed_m3", "Through openings and meshes", "m³", "f1"},
+                                       {"retained_m3", "Retained at the end", "m³", "f1"},
+                                       {"peak_retained_m3", "Retained at most", "m³", "f1"},
+                                       {"peak_filling_height_m", "Filled at most", "m", "f2"}});
         rows = table(columns);
         for (const observe::BuildingImpact& b : impacts) {
             if (!b.is_barrier) continue;
@@ -199,15 +193,11 @@ Json barriers(const run::RunResult& result) {
                                     {"peak_impact_pressure_kPa", b.peak_impact_pressure / 1e3},
                                     {"impulse_kNs", b.impulse / 1e3}});
             Json& row = rows["rows"].back();
-            if (result.depth_averaged()) {
-                row["peak_depth_m"] = b.peak_depth;
-                continue;
-            }
             row.update({{"overtopped_m3", b.overtopped_volume},
                         {"first_overtopped_s", seconds(b.first_overtopping_time)},
                         {"passed_m3", b.passed_volume},
-                        {"held_m3", b.held_volume},
-                        {"peak_held_m3", b.peak_held_volume},
+                        {"retained_m3", b.retained_volume},
+                        {"peak_retained_m3", b.peak_retained_volume},
                         {"peak_filling_height_m", b.peak_filling_height}});
         }
     }

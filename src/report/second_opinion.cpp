@@ -129,16 +129,25 @@ Json quantity_rows(const BothModels& models, const run::SecondOpinion& opinion) 
 }
 
 Json structure_rows(const BothModels& models) {
-    Json rows = table({{"name", "Structure", ""},
-                       {"hit_by", "Hit in", ""},
-                       {"first_hit_s", "First hit", "s", "f1"},
-                       {"first_hit_depth_averaged_s", "depth-averaged", "s", "f1"},
-                       {"peak_force_kN", "Peak force", "kN", "s3"},
-                       {"peak_force_depth_averaged_kN", "depth-averaged", "kN", "s3"},
-                       {"peak_impact_pressure_kPa", "Impact pressure", "kPa", "s3"},
-                       {"peak_impact_pressure_depth_averaged_kPa", "depth-averaged", "kPa", "s3"},
-                       {"peak_depth_m", "Depth at walls", "m", "f2"},
-                       {"peak_depth_depth_averaged_m", "depth-averaged", "m", "f2"}});
+    const auto& structures = models.particles.observation.buildings;
+    const bool barriers = std::any_of(structures.begin(), structures.end(), [](const auto& b) { return b.is_barrier; });
+    std::vector<Column> columns = {{"name", "Structure", ""},
+                                   {"hit_by", "Hit in", ""},
+                                   {"first_hit_s", "First hit", "s", "f1"},
+                                   {"first_hit_depth_averaged_s", "depth-averaged", "s", "f1"},
+                                   {"peak_force_kN", "Peak force", "kN", "s3"},
+                                   {"peak_force_depth_averaged_kN", "depth-averaged", "kN", "s3"},
+                                   {"peak_impact_pressure_kPa", "Impact pressure", "kPa", "s3"},
+                                   {"peak_impact_pressure_depth_averaged_kPa", "depth-averaged", "kPa", "s3"},
+                                   {"peak_depth_m", "Depth at walls", "m", "f2"},
+                                   {"peak_depth_depth_averaged_m", "depth-averaged", "m", "f2"}};
+    if (barriers) {
+        columns.insert(columns.end(), {{"overtopped_m3", "Over the crest", "m³", "f1"},
+                                       {"overtopped_depth_averaged_m3", "depth-averaged", "m³", "f1"},
+                                       {"retained_m3", "Retained at the end", "m³", "f1"},
+                                       {"retained_depth_averaged_m3", "depth-averaged", "m³", "f1"}});
+    }
+    Json rows = table(columns);
     for_each_structure(models, [&](const auto& p, const auto& d, HitBy by) {
         if (by == neither) return;
         Json row = {
@@ -150,6 +159,10 @@ Json structure_rows(const BothModels& models) {
             row["peak_force" + model + "_kN"] = shown(impact.peak_force / 1e3);
             row["peak_impact_pressure" + model + "_kPa"] = shown(impact.peak_impact_pressure / 1e3);
             row["peak_depth" + model + "_m"] = shown(impact.peak_depth);
+            if (!barriers) return;
+            const auto of_barrier = [&](double value) { return impact.is_barrier ? shown(value) : Json(); };
+            row["overtopped" + model + "_m3"] = of_barrier(impact.overtopped_volume);
+            row["retained" + model + "_m3"] = of_barrier(impact.retained_volume);
         };
         add(p, "");
         add(d, "_depth_averaged");
@@ -266,6 +279,8 @@ Json second_opinion_results(const BothModels& models, const run::SecondOpinion& 
                   {"depth_averaged_only_m2", opinion.area.only_second},
                   {"cell_m", opinion.difference.geometry.cell},
                   {"arrival_depth_m", models.scene.spec.outputs.arrival_depth}}},
+                {"impact_patch_edge_m", models.scene.spec.outputs.impact_patch_edge},
+                {"impact_filter_window_s", models.scene.spec.outputs.impact_filter_window},
                 {"differences", differences(models, opinion)},
                 {"key_figures", cards(models, opinion)},
                 {"quantities", quantity_rows(models, opinion)},

@@ -30,6 +30,18 @@ double internal_friction(const params::MaterialSpec& material) {
     return material.internal_friction_coefficient.value_or(material.friction_coefficient);
 }
 
+double volume_of(const std::vector<terrain::Release>& releases) {
+    double sum = 0;
+    for (const terrain::Release& release : releases) sum += release.volume;
+    return sum;
+}
+
+observe::GridStructures watched_structures(depth::Solver& solver, const scene::Scene& scene, const GridGround& ground) {
+    observe::GridStructures structures(solver, scene.terrain, scene.buildings, ground.structures, scene.spec.outputs);
+    solver.watch(structures.faces());
+    return structures;
+}
+
 /// A run of the depth-averaged model, step by step.
 class GridRun {
   public:
@@ -40,10 +52,11 @@ class GridRun {
           inflows_(solver_, scene.inflows),
           friction_inside_(solver_, inside == Inside::as_particles ? internal_friction(scene.spec.material) : 0),
           bed_(grid_bed(scene, ground_)),
-          observer_(solver_, scene.flow_path, scene.spec.outputs, ground_.structures),
+          observer_(solver_, scene.flow_path, scene.spec.outputs, watched_structures(solver_, scene, ground_),
+                    volume_of(scene.releases)),
           stop_rule_(scene.spec.solver),
           clock_(scene.spec.solver) {
-        for (const terrain::Release& release : scene.releases) held_ += release.volume;
+        held_ = volume_of(scene.releases);
         release_due();
         observer_.watch(solver_, scene.gauges);
     }
@@ -148,7 +161,7 @@ class GridRun {
             const Grid<float> depth = grid_release(scene_, release, ground_);
             solver_.add(depth, release.spec.pore_pressure_ratio);
             held_ = std::max(0.0, held_ - release.volume);
-            observer_.note_release(solver_, depth, solver_.volume() - before);
+            observer_.note_release(solver_, depth, solver_.volume() - before, held_);
             stop_rule_.stir(solver_.time());
         }
     }

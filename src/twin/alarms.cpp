@@ -95,10 +95,9 @@ std::optional<AlarmWatch::Finding> AlarmWatch::load(const Rule& rule, const Live
                        run.summary().time};
     }
     const bool impact = spec.impact_pressure.has_value();
-    if (spec.depth || (impact ? measured->peak_impact_pressure < *spec.impact_pressure
-                              : measured->peak_dynamic_pressure < *spec.dynamic_pressure)) {
-        return {};
-    }
+    const bool reached = !spec.depth && (impact ? measured->peak_impact_pressure >= *spec.impact_pressure
+                                                : measured->peak_dynamic_pressure >= *spec.dynamic_pressure);
+    if (!reached) return {};
     return Finding{
         fmt::format("{} pressure {:.1f} kPa on {}", impact ? "impact" : "dynamic",
                     (impact ? measured->peak_impact_pressure : measured->peak_dynamic_pressure) / 1000, measured->name),

@@ -11,7 +11,7 @@ bool same(const observe::BuildingImpact& a, const observe::BuildingImpact& b) {
     const auto numbers = [](const observe::BuildingImpact& i) {
         return std::array{
             i.peak_force, i.peak_impact_pressure, i.peak_depth,          i.peak_dynamic_pressure, i.peak_speed,
-            i.impulse,    i.held_volume,          i.peak_filling_height, i.overtopped_volume,     i.passed_volume};
+            i.impulse,    i.retained_volume,      i.peak_filling_height, i.overtopped_volume,     i.passed_volume};
     };
     return a.hit == b.hit && std::isnan(a.failure_time) == std::isnan(b.failure_time) && numbers(a) == numbers(b);
 }

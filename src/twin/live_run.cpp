@@ -106,7 +106,7 @@ std::optional<double> LiveRun::wall_remaining() const {
 observe::BuildingImpact LiveRun::impact_now(std::size_t obstacle) const {
     observe::BuildingImpact impact = observer().impacts()[obstacle];
     if (const observe::Overtopping* crossings = observer().overtopping(obstacle)) {
-        impact.held_volume = crossings->filling(state()).volume;
+        impact.retained_volume = crossings->filling(state()).volume;
     }
     return impact;
 }

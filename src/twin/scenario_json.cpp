@@ -143,8 +143,8 @@ json impact_json(const std::string& id, const observe::BuildingImpact& impact, b
                 {"peak_force_kN", impact.peak_force / 1e3},
                 {"peak_impact_pressure_kPa", impact.peak_impact_pressure / 1e3},
                 {"peak_depth_m", impact.peak_depth},
-                {"peak_speed_mps", impact.peak_speed},
-                {"peak_dynamic_pressure_kPa", impact.peak_dynamic_pressure / 1e3},
+                {"peak_speed_mps", number_or_null<json>(impact.peak_speed)},
+                {"peak_dynamic_pressure_kPa", number_or_null<json>(impact.peak_dynamic_pressure / 1e3)},
                 {"impulse_kNs", impact.impulse / 1e3},
                 {"failed_s", number_or_null<json>(impact.failure_time)},
                 {"intensity", intensity != nullptr ? json(intensity->name) : json()}};
@@ -152,7 +152,7 @@ json impact_json(const std::string& id, const observe::BuildingImpact& impact, b
         row["overtopped_m3"] = impact.overtopped_volume;
         row["first_overtopped_s"] = number_or_null<json>(impact.first_overtopping_time);
         row["passed_m3"] = impact.passed_volume;
-        row["held_m3"] = impact.held_volume;
+        row["retained_m3"] = impact.retained_volume;
         row["peak_filling_height_m"] = impact.peak_filling_height;
     }
     return row;

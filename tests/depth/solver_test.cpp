@@ -47,6 +47,31 @@ TEST(Solver, counts_what_leaves_over_edges_and_unknown_ground) {
     EXPECT_NEAR((solver.volume() + solver.volume_left()) / start, 1, 1e-6);
 }
 
+TEST(Solver, counts_what_passes_faces_as_cells_gain_and_lose_it) {
+    depth::Solver solver = in_a_valley();
+    std::vector<depth::Face> faces;  // a line across the valley, south to north and back east
+    for (int row = 0; row < 120; ++row) faces.push_back({59, row, false});
+    for (int column = 60; column < 120; ++column) faces.push_back({column, 63, true});
+    solver.watch(faces);
+    const auto quarter = [&] {
+        double sum = 0;
+        for (int row = 0; row < 64; ++row) {
+            for (int column = 60; column < 120; ++column) sum += solver.depth_at(column, row);
+        }
+        return sum;
+    };
+    double gained = -quarter(), into = 0;
+    const double volume = solver.volume();
+    while (solver.time() < 12) {
+        ASSERT_TRUE(solver.advance(0.2).ok());
+        for (std::size_t k = 0; k < 64; ++k) into += solver.passed()[k];
+        for (std::size_t k = 120; k < 180; ++k) into -= solver.passed()[k];
+    }
+    gained += quarter();
+    EXPECT_GT(gained, 0.05 * volume);
+    EXPECT_NEAR(into, gained, 1e-6 * volume);
+}
+
 TEST(Solver, never_has_a_negative_depth_or_a_wild_speed) {
     depth::Solver solver = in_a_valley();
     for (int k = 0; k < 300; ++k) {

@@ -145,6 +145,10 @@ TEST(Observer, volumes_and_energies_are_those_of_the_particles) {
     state.seeded = 9;
     state.outflow = 5;
     state.mean_compression = 0.01;
+    const TimeSample before = Observer(model, ground, state, {}, params::OutputSpec{}, 1).latest();
+    EXPECT_EQ(before.volume_held, 4 * volume) << "nothing is let go before the first step";
+    EXPECT_EQ(before.volume_moving + before.volume_deposited, 0);
+    state.step = 1;
     Observer observer(model, ground, state, {}, params::OutputSpec{}, 1);
     const TimeSample& row = observer.latest();
     EXPECT_EQ(row.volume_moving, 1 * volume);

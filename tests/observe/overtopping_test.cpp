@@ -41,7 +41,7 @@ TEST(Overtopping, tells_what_goes_over_the_crest_from_what_goes_through_a_slot) 
     };
     // The slot is 2 m wide around the middle of the line, y = 0; the crest is 2 m above the ground.
     for (const Case& c : {Case{5, 3, 1, 0}, Case{0, 0.2F, 0, 1}, Case{0, 2.5F, 1, 0}, Case{0.9F, 1, 0, 1}}) {
-        Overtopping watch(model, test::make_ground().terrain, dam({{10, 2, 0}}));
+        Overtopping watch(model, test::make_ground().terrain, dam({{10, 2, 0}}), 0.1);
         sim::State state = runner(c.y, c.z);
         run(watch, state, 30);
         EXPECT_NEAR(watch.volume(), c.over * volume, 1e-12) << c.y << " " << c.z;
@@ -56,7 +56,7 @@ TEST(Overtopping, what_a_net_lets_through_below_its_crest_has_passed) {
     net.passing_share = 0.5;
     for (std::uint32_t id = 0; id < 20; ++id) {
         for (const float z : {0.2F, 1.9F, 2.1F}) {
-            Overtopping watch(model, test::make_ground().terrain, net);
+            Overtopping watch(model, test::make_ground().terrain, net, 0.1);
             sim::State state = runner(5, z);
             state.id[0] = id;
             state.seeded = 20;
@@ -71,7 +71,7 @@ TEST(Overtopping, what_a_net_lets_through_below_its_crest_has_passed) {
 
 TEST(Overtopping, what_comes_back_does_not_count) {
     const sim::Model model = test::make_model(0.4);
-    Overtopping watch(model, test::make_ground().terrain, dam({{10, 2, 0}}));
+    Overtopping watch(model, test::make_ground().terrain, dam({{10, 2, 0}}), 0.1);
     sim::State state = runner(0, 0.2F);
     run(watch, state, 30);
     EXPECT_GT(watch.passed_volume(), 0);
@@ -83,7 +83,7 @@ TEST(Overtopping, what_comes_back_does_not_count) {
 
 TEST(Overtopping, filling_is_the_depth_at_the_upstream_face) {
     const sim::Model model = test::make_model(0.4);
-    Overtopping watch(model, test::make_ground().terrain, dam());
+    Overtopping watch(model, test::make_ground().terrain, dam(), 0.1);
     // 4 m long, 8 m wide and 1.2 m deep behind the face, which is half a metre west of the line.
     sim::State state = test::block(0.4, -4.5, -4, 10, 20, 3);
     watch.follow(state);
@@ -91,6 +91,31 @@ TEST(Overtopping, filling_is_the_depth_at_the_upstream_face) {
     const Overtopping::Filling filling = watch.filling(state);
     EXPECT_NEAR(filling.volume, 4 * 8 * 1.2, 1e-3);
     EXPECT_NEAR(filling.height, 1.2, 0.15);
+}
+
+TEST(Overtopping, the_height_of_a_dam_has_no_part_in_what_it_retains) {
+    const sim::Model model = test::make_model(0.4);
+    // 20 m long, twenty times as long as deep, and 12 m beyond a gap a heap that touches nothing.
+    sim::State state = test::block(0.4, -20.5, -4, 50, 20, 2);
+    const sim::State away = test::block(0.4, -40, -4, 10, 20, 2);
+    for (std::uint32_t i = 0; i < away.count; ++i) test::add_particle(state, away.position.at(i));
+    for (const double height : {3.0, 6.0, 20.0}) {
+        params::BarrierSpec shape = dam();
+        shape.height = height;
+        Overtopping watch(model, test::make_ground().terrain, shape, 0.1);
+        watch.follow(state);
+        watch.after_step(state);
+        EXPECT_NEAR(watch.filling(state).volume, 20 * 8 * 0.8, 1e-3) << height;
+    }
+}
+
+TEST(Overtopping, retains_nothing_that_has_not_come_to_it) {
+    const sim::Model model = test::make_model(0.4);
+    Overtopping watch(model, test::make_ground().terrain, dam(), 0.1);
+    sim::State state = test::block(0.4, -20, -4, 10, 20, 3);
+    watch.follow(state);
+    watch.after_step(state);
+    EXPECT_EQ(watch.filling(state).volume, 0);
 }
 
 }  // namespace

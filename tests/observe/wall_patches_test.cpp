@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "observe/particles.hpp"
+#include "terrain/barrier.hpp"
 
 namespace talus::observe {
 namespace {
@@ -75,6 +76,28 @@ TEST(WallPatches, every_column_starts_at_the_ground) {
         const double x = c.x + c.width / 2 * c.along_x, y = c.y + c.width / 2 * c.along_y;
         EXPECT_NEAR(c.z, slope.sample(x, y).height, 1e-6);
     }
+}
+
+TEST(WallPatches, there_is_no_wall_where_parts_of_a_structure_meet) {
+    const terrain::Terrain ground = test::make_ground().terrain;
+    const auto dam = terrain::make_barrier(ground, "dam", {{{990, 2000}, {1010, 2000}}, 2, {}, 1, {}});
+    ASSERT_TRUE(dam);
+    ASSERT_GT(dam->footprint.size(), 5U);
+    const WallPatches patches(ground, {*dam}, 1, 2);
+    double around = 0;
+    for (const WallPatches::Column& c : patches.columns()) around += c.roof ? 0 : c.width;
+    EXPECT_NEAR(around, 2 * (20 + 1), 1e-9);
+    // A touch beside such a place is one on the face.
+    double face = 0;
+    patches.spread(0, {0.01F, 0.5F, 1}, 1, [&](std::uint32_t patch, double share) {
+        for (const WallPatches::Column& c : patches.columns()) {
+            const bool of_face = !c.roof && c.along_y == 0;
+            if (of_face && patch >= c.first_patch && patch < c.first_patch + static_cast<std::uint32_t>(c.rows)) {
+                face += share * c.area;
+            }
+        }
+    });
+    EXPECT_NEAR(face, 1, 1e-6);
 }
 
 }  // namespace

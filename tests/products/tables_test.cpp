@@ -62,7 +62,7 @@ TEST_F(Products, BuildingTableUsesKilonewtonAndKilopascal) {
     EXPECT_THAT(rows[0], ElementsAre("name", "hit", "first_hit_time_s", "peak_force_kN", "peak_impact_pressure_kPa",
                                      "peak_dynamic_pressure_kPa", "peak_depth_m", "filter_window_s", "patch_edge_m",
                                      "height_m", "height_assumed", "kind", "impulse_kNs", "failed_s", "overtopped_m3",
-                                     "first_overtopped_s", "passed_m3", "held_m3", "peak_held_m3",
+                                     "first_overtopped_s", "passed_m3", "retained_m3", "peak_retained_m3",
                                      "peak_filling_height_m", "removed_time_s", "peak_speed_mps", "intensity"));
     EXPECT_EQ(rows[1][0], "House 38");
     EXPECT_EQ(rows[1][1], "yes");
@@ -99,21 +99,21 @@ TEST_F(Products, BarriersHaveTheirVolumesAndTheirHistory) {
     EXPECT_EQ(
         test::read_text(folder.path() / "structures_over_time.csv"),
         "name,time_s,force_kN,impact_pressure_kPa,depth_m,dynamic_pressure_kPa,impulse_kNs,overtopped_m3,passed_m3,"
-        "held_m3,filling_height_m\n"
+        "retained_m3,filling_height_m\n"
         "House 38,11,2,0.9,0.75,0.6,3,1,0.5,40,1.5\nHouse 38,12,5,1.1,1.5,0,7,7.25,0.5,44,2\n");
     const std::string report = test::report_page(*scene_, result);
     EXPECT_THAT(report, HasSubstr("House 38 failed at 12.50 s"));
     EXPECT_THAT(report, HasSubstr("Force on structures over time."));
     EXPECT_THAT(report, HasSubstr("<h3>Barriers</h3>"));
-    EXPECT_THAT(report, testing::Not(HasSubstr("What nets held and let through.")));
+    EXPECT_THAT(report, testing::Not(HasSubstr("What nets retained and let through.")));
     dam.passing_share = 0.4;
     dam.hit = true;
-    dam.held_volume = 44;
+    dam.retained_volume = 44;
     dam.passed_volume = 8.75;
     ASSERT_TRUE(write_tables(*scene_, result, folder.path()).ok());
     EXPECT_EQ(rows_of(test::read_text(folder.path() / "buildings.csv"))[1][11], "net");
     const std::string of_net = test::report_page(*scene_, result);
-    EXPECT_THAT(of_net, HasSubstr("What nets held and let through."));
+    EXPECT_THAT(of_net, HasSubstr("What nets retained and let through."));
     EXPECT_THAT(of_net, HasSubstr("its meshes let 40 % of the grains through"));
     EXPECT_THAT(of_net, HasSubstr("Of 60.0 m³ that came to it, 44.0 m³ lie behind it (73 %), 8.8 m³ went through"));
     const std::string without = test::report_page(*scene_, *result_);

@@ -130,10 +130,10 @@ std::string bits_of(const observe::BuildingImpact& i) {
     std::string bits =
         bits_of({i.first_hit_time, i.peak_force, i.peak_impact_pressure, i.peak_depth, i.peak_dynamic_pressure,
                  i.peak_speed, i.impulse, i.failure_time, i.overtopped_volume, i.first_overtopping_time,
-                 i.passed_volume, i.held_volume, i.peak_held_volume, i.peak_filling_height});
+                 i.passed_volume, i.retained_volume, i.peak_retained_volume, i.peak_filling_height});
     for (const observe::StructureSample& s : i.history) {
         bits += bits_of({s.time, s.force, s.impact_pressure, s.depth, s.dynamic_pressure, s.impulse,
-                         s.overtopped_volume, s.passed_volume, s.held_volume, s.filling_height});
+                         s.overtopped_volume, s.passed_volume, s.retained_volume, s.filling_height});
     }
     return bits;
 }
@@ -208,7 +208,7 @@ TEST_F(WholeRun, OnADeviceObserversMeasureWhatTheyMeasureOnCopies) {
         const observe::BuildingImpact &net = on_copy.buildings[0], &dam = on_copy.buildings[1];
         EXPECT_GT(net.passed_volume, 0);
         EXPECT_GT(net.overtopped_volume, 0);
-        EXPECT_GT(net.peak_held_volume, 0);
+        EXPECT_GT(net.peak_retained_volume, 0);
         EXPECT_GT(dam.peak_dynamic_pressure, 0);
         EXPECT_FALSE(std::isnan(dam.failure_time)) << "it never failed";
         ASSERT_EQ(on_device.gauges.size(), 1U);

@@ -1,5 +1,6 @@
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <stdexcept>
 
 #include <gmock/gmock.h>
@@ -77,6 +78,53 @@ TEST_F(DepthAveragedRun, stops_at_a_barrier_and_measures_it) {
     EXPECT_GT(impact.peak_depth, 0.5);
     EXPECT_GT(impact.peak_force, 0);
     EXPECT_GT(impact.first_hit_time, 1);
+}
+
+TEST_F(DepthAveragedRun, tells_what_went_over_a_dam_and_what_it_retains) {
+    const double line = west + 150;
+    const auto beyond = [&](const RunResult& result) {
+        const Grid<float>& deposit = result.observation.maps.deposit_depth;
+        double sum = 0;
+        for (int row = 0; row < deposit.geometry.rows; ++row) {
+            for (int column = 0; column < deposit.geometry.columns; ++column) {
+                const float depth = deposit.at(column, row);
+                if (depth > 0 && deposit.geometry.centre(column, row).x > line) sum += depth;
+            }
+        }
+        return sum * deposit.geometry.cell * deposit.geometry.cell + result.observation.timeseries.back().volume_left;
+    };
+    const auto low = run_scene(loaded(dam("height_m = 1.5"), {"solver.end_time_s=40"}), {});
+    ASSERT_TRUE(low);
+    const observe::BuildingImpact& overtopped = low->observation.buildings[0];
+    EXPECT_GT(overtopped.overtopped_volume, 300);
+    EXPECT_NEAR(overtopped.overtopped_volume, beyond(*low), 0.02 * overtopped.overtopped_volume);
+    std::optional<double> retained;
+    for (const double height : {25.0, 50.0}) {
+        const auto high = run_scene(loaded(dam(fmt::format("height_m = {}", height)), {"solver.end_time_s=40"}), {});
+        ASSERT_TRUE(high);
+        const observe::BuildingImpact& dammed = high->observation.buildings[0];
+        EXPECT_EQ(dammed.overtopped_volume, 0);
+        EXPECT_TRUE(std::isnan(dammed.first_overtopping_time));
+        EXPECT_GT(dammed.retained_volume, 300);
+        EXPECT_LE(dammed.retained_volume, high->observation.volume_released);
+        EXPECT_EQ(dammed.retained_volume, retained.value_or(dammed.retained_volume)) << "whatever its height";
+        retained = dammed.retained_volume;
+    }
+}
+
+TEST_F(DepthAveragedRun, holds_all_debris_until_the_first_step) {
+    for (const char* start : {"release.start_time_s=0", "release.start_time_s=0.2"}) {
+        for (const char* model : {"solver.model=depth_averaged", "solver.model=particles"}) {
+            const auto result =
+                run_scene(loaded("", {model, start, "solver.end_time_s=0.3", "solver.target_particle_count=300"}), {});
+            ASSERT_TRUE(result) << result.error().message;
+            const observe::TimeSample& first = result->observation.timeseries.front();
+            EXPECT_GT(first.volume_held, 100) << start << model;
+            EXPECT_NEAR(first.volume_released, first.volume_held, 1e-5 * first.volume_held) << start << model;
+            EXPECT_EQ(first.volume_deposited, 0);
+            EXPECT_EQ(first.volume_moving, 0);
+        }
+    }
 }
 
 TEST_F(DepthAveragedRun, holds_a_release_until_its_start) {

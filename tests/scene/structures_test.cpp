@@ -83,8 +83,8 @@ TEST_F(Structures, ANetHoldsMoreThanASlotLetsThroughAndEverythingIsAccountedFor)
     EXPECT_EQ(at_net.passing_share, 0.5);
     EXPECT_EQ(at_wall.passed_volume, 0);
     EXPECT_GT(at_net.passed_volume, 1);
-    EXPECT_GT(at_net.held_volume, 1);
-    EXPECT_LT(at_net.held_volume, at_wall.held_volume);
+    EXPECT_GT(at_net.retained_volume, 1);
+    EXPECT_LT(at_net.retained_volume, at_wall.retained_volume);
     EXPECT_LT(at_net.impulse, at_wall.impulse);
     EXPECT_GT(at_net.peak_filling_height, 0);
     ASSERT_GT(at_net.history.size(), 3U);
@@ -182,7 +182,7 @@ TEST_F(Structures, ADamHoldsDebrisAndItsSlotLetsSomeThrough) {
     write_valley(dam() + "[[barrier_opening]]\nbarrier = \"dam\"\nposition_m = 30\nwidth_m = 8\n");
     const run::RunResult open = run();
     EXPECT_GT(open.observation.buildings.at(0).passed_volume, 20);
-    EXPECT_LT(open.observation.buildings.at(0).held_volume, dam_alone.held_volume);
+    EXPECT_LT(open.observation.buildings.at(0).retained_volume, dam_alone.retained_volume);
 }
 
 TEST_F(Structures, AResistanceThatIsExceededBringsItDownTheSameOnAnyNumberOfThreads) {

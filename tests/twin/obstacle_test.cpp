@@ -61,7 +61,7 @@ TEST(Barrier, higher_than_the_flow_keeps_all_of_it) {
     EXPECT_EQ(impact["overtopped_m3"], 0);
     EXPECT_EQ(impact["first_overtopped_s"], nullptr);
     EXPECT_LT(number(*scenario, "front_chainage_m"), 54);
-    EXPECT_GT(impact["held_m3"].get<double>(), 0.5 * number(*scenario, "volume_released_m3"));
+    EXPECT_GT(impact["retained_m3"].get<double>(), 0.5 * number(*scenario, "volume_released_m3"));
     EXPECT_EQ(number(*scenario, "volume_left_m3"), 0);
 }
 
@@ -159,7 +159,8 @@ TEST(Obstacle, taken_away_stays_in_tables_and_report_with_the_time_of_it) {
     EXPECT_EQ(removed[0]["hit"], true);
     EXPECT_EQ(removed[1]["kind"], "barrier");
     EXPECT_EQ(removed[1]["removed_s"], time);
-    for (const char* key : {"peak_force_kN", "overtopped_m3", "held_m3"}) EXPECT_EQ(removed[1][key], then[key]) << key;
+    for (const char* key : {"peak_force_kN", "overtopped_m3", "retained_m3"})
+        EXPECT_EQ(removed[1][key], then[key]) << key;
 
     talus::test::TemporaryFolder folder;
     ASSERT_TRUE(scenario->products()(folder.path()));

@@ -105,7 +105,7 @@ TEST(DrawnRelease, that_moves_changes_at_restart_and_is_held_again) {
     EXPECT_EQ(number(*scenario, "volume_released_m3"), moving);
     act(*scenario, {{"action", "restart"}});
     EXPECT_EQ(release_of(*scenario, id)["status"], "held");
-    EXPECT_NEAR(number(*scenario, "volume_held_m3"), release_of(*scenario, id)["volume_m3"].get<double>(), 0.2);
+    EXPECT_EQ(number(*scenario, "volume_held_m3"), number(*scenario, "volume_released_m3")) << "before the first step";
     EXPECT_LT(number(*scenario, "volume_released_m3"), moving - 10);
     run_until(*scenario, 0.5);
     EXPECT_GT(number(*scenario, "volume_held_m3"), 10);
@@ -137,12 +137,11 @@ TEST(Release, removed_while_it_moves_is_taken_away_and_the_rest_goes_on) {
 TEST(Release, its_trigger_can_be_taken_back) {
     const auto scenario = open(channel_scene());
     const std::string id = act(*scenario, drawn(30, 1)).created;
-    const double held = number(*scenario, "volume_held_m3");
     act(*scenario, {{"action", "trigger_release"}, {"id", id}});
     run_until(*scenario, 1);
     EXPECT_EQ(number(*scenario, "volume_held_m3"), 0);
     act(*scenario, {{"action", "undo"}});
-    EXPECT_EQ(number(*scenario, "volume_held_m3"), held);
+    EXPECT_NEAR(number(*scenario, "volume_held_m3"), release_of(*scenario, id)["volume_m3"].get<double>(), 0.2);
     EXPECT_EQ(release_of(*scenario, id)["status"], "held");
     expect_balance(*scenario);
 }

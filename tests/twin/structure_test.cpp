@@ -124,7 +124,7 @@ TEST(Net, lets_through_and_holds_in_the_live_twin_and_replays_to_the_same_hash) 
     const json net = scenario->impacts_json()["barriers"][0];
     EXPECT_EQ(net["hit"], true);
     EXPECT_GT(net["passed_m3"], 0.5);
-    EXPECT_GT(net["held_m3"], 1);
+    EXPECT_GT(net["retained_m3"], 1);
     EXPECT_GT(net["peak_force_kN"], 0);
     const auto journal = read_journal(scenario->journal_json().dump());
     ASSERT_TRUE(journal) << journal.error().message;
@@ -174,8 +174,8 @@ TEST(Clearance, lets_debris_pass_below_the_net_as_if_it_were_not_there) {
     }
     const json closed = held->impacts_json()["barriers"][0], gap = open_below->impacts_json()["barriers"][0];
     EXPECT_EQ(closed["passed_m3"], 0);
-    EXPECT_GT(closed["held_m3"], 5);
-    EXPECT_GT(gap["passed_m3"].get<double>() + gap["held_m3"].get<double>(), 5);
+    EXPECT_GT(closed["retained_m3"], 5);
+    EXPECT_GT(gap["passed_m3"].get<double>() + gap["retained_m3"].get<double>(), 5);
     EXPECT_GT(gap["passed_m3"], 5);
     EXPECT_EQ(gap["overtopped_m3"], 0);
     EXPECT_GT(number(*open_below, "front_chainage_m"), number(*held, "front_chainage_m") + 3);

@@ -72,7 +72,9 @@ struct Inside {
     TALUS_DEVICE bool takes(std::uint32_t i) const {
         return rectangle.contains(d.state.position[i].x, d.state.position[i].y) && (!released || d.state.held[i] == 0);
     }
-    TALUS_DEVICE Item item(std::uint32_t i) const { return {d.state.position[i], d.state.id[i]}; }
+    TALUS_DEVICE Item item(std::uint32_t i) const {
+        return {d.state.position[i], d.state.id[i], length(d.state.velocity[i])};
+    }
 };
 
 template <class Choice>

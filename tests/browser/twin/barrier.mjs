@@ -84,7 +84,7 @@ export async function testBarrier(run) {
     const told = await row();
     assert.ok(told.Force > 10, JSON.stringify(told));
     assert.equal(told.Over, 0);
-    assert.ok(told.Held > 0.5 * s.volume_released_m3, `${told.Held} of ${s.volume_released_m3} m3 are held`);
+    assert.ok(told.Retained > 0.5 * s.volume_released_m3, `${told.Retained} of ${s.volume_released_m3} m3 are retained`);
     const seen = await run.colours(page, await viewClip(page));
     assert.ok(seen.different > 1000);
     await run.shot(page, "19-barrier-holds");

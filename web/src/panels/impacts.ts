@@ -24,7 +24,7 @@ const houseColumns: Column<Impact>[] = [
 const barrierColumns: Column<BarrierImpact>[] = [
   { key: "name", title: "Barrier", unit: "", value: (r) => r.name },
   { key: "force", title: "Force", unit: "kN", value: (r) => r.peak_force_kN, digits: 0 },
-  { key: "held", title: "Held", unit: "m3", value: (r) => r.held_m3, digits: 0 },
+  { key: "retained", title: "Retained", unit: "m3", value: (r) => r.retained_m3, digits: 0 },
   { key: "over", title: "Over", unit: "m3", value: (r) => r.overtopped_m3, digits: 1 },
   { key: "through", title: "Through", unit: "m3", value: (r) => r.passed_m3, digits: 1 },
   { key: "failed", title: "Failed", unit: "s", value: (r) => r.failed_s, digits: 1 },
@@ -161,7 +161,7 @@ export function impactsPanel(twin: Twin, stage: Stage): HTMLElement {
     const removed = impacts?.removed ?? [];
     gone.replaceChildren(...removed.map((r) => h("li", {}, h("b", {}, r.name), ` until ${fixed(r.removed_s, 1)} s: `,
       r.hit ? `${quantity(r.peak_impact_pressure_kPa, "kPa")}, ${quantity(r.peak_force_kN, "kN")}` : "not hit",
-      r.overtopped_m3 === undefined ? "" : `, ${quantity(r.overtopped_m3, "m3")} went over it, ${quantity(r.held_m3, "m3")} held`)));
+      r.overtopped_m3 === undefined ? "" : `, ${quantity(r.overtopped_m3, "m3")} went over it, ${quantity(r.retained_m3, "m3")} retained`)));
     goneTitle.hidden = gone.hidden = removed.length === 0;
     then.hidden = twin.replay_s.value === null;
     then.textContent = `As of ${fixed(twin.replay_s.value, 1)} s.`;

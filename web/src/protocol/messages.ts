@@ -200,11 +200,11 @@ export interface BarrierImpact extends Impact {
   overtopped_m3: number;
   first_overtopped_s: number | null;
   passed_m3: number;
-  held_m3: number;
+  retained_m3: number;
   peak_filling_height_m: number;
 }
 /** An obstacle removed during the run, and its impact until then. */
-export interface RemovedImpact extends Impact { kind: "building" | "barrier"; removed_s: number; overtopped_m3?: number; held_m3?: number }
+export interface RemovedImpact extends Impact { kind: "building" | "barrier"; removed_s: number; overtopped_m3?: number; retained_m3?: number }
 export interface Impacts { buildings: Impact[]; barriers: BarrierImpact[]; removed: RemovedImpact[] }
 
 /** What passed a gauge, and what is there. */

@@ -24,7 +24,7 @@ export function differenceText(row: Row): string {
 type Measure<T> = readonly [string, string, (of: T) => number | null];
 const atHouses: readonly Measure<Impact>[] = [["impact pressure", "kPa", (i) => i.peak_impact_pressure_kPa], ["force", "kN", (i) => i.peak_force_kN],
   ["depth", "m", (i) => i.peak_depth_m], ["hit at", "s", (i) => i.first_hit_s]];
-const atBarriers: readonly Measure<BarrierImpact>[] = [["force", "kN", (i) => i.peak_force_kN], ["held", "m3", (i) => i.held_m3], ["over", "m3", (i) => i.overtopped_m3],
+const atBarriers: readonly Measure<BarrierImpact>[] = [["force", "kN", (i) => i.peak_force_kN], ["retained", "m3", (i) => i.retained_m3], ["over", "m3", (i) => i.overtopped_m3],
   ["through", "m3", (i) => i.passed_m3], ["failed at", "s", (i) => i.failed_s]];
 const atGauges: readonly Measure<GaugeReading>[] = [["arrival", "s", (g) => g.arrival_s], ["peak depth", "m", (g) => g.peak_depth_m], ["peak speed", "m/s", (g) => g.peak_speed_mps]];
 const atPoints: readonly Measure<PointPeaks>[] = [["peak depth", "m", (p) => p.depth_m], ["peak speed", "m/s", (p) => p.speed_mps], ["peak dynamic pressure", "kPa", (p) => p.pressure_kPa]];
