@@ -37,14 +37,16 @@ struct FrontRecord {
         double mean = never, fastest = never;
     };
     double interval = 1, window = 10;  ///< m of chainage; the window is that of front velocities
+    double resolution = 0;             ///< m, length below which arrivals say little about velocity: that of map cells
     std::vector<double> arrival{};     ///< s, by chainage / interval; NaN: not yet
     std::vector<Head> head{};
 
     [[nodiscard]] std::vector<FrontSample> samples() const;
 
   private:
+    [[nodiscard]] double fastest(std::size_t first, std::size_t last) const;
     /// Whether the front went from the previous chainage to this one faster than the debris there moves: at a corner of
-    /// the path, or because other debris entered its corridor.
+    /// the path, or because other debris entered its corridor. Both are looked at over the resolution.
     [[nodiscard]] bool jumped_to(std::size_t bin) const;
     [[nodiscard]] double velocity_at(std::size_t middle) const;
 };

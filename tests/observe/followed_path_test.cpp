@@ -168,17 +168,5 @@ TEST(FollowDebris, leaves_all_as_it_was_where_debris_hardly_left_its_release) {
     EXPECT_EQ(o.run_out.front_chainage, 205.661545);
 }
 
-TEST(TrailDistances, name_the_cell_at_a_distance_on_the_way) {
-    Trail trail({{1010, 2070}, {1110, 2070}, {1110, 2010}});
-    const Grid<float>& covered = trail.o.maps.peak_depth;
-    const TrailDistances ways(covered, {1010, 2070});
-    for (const double along : {0.5, 30.0, 90.0, 120.0, 140.0}) {
-        const auto k = ways.cell_on_way({1110, 2010}, along);
-        ASSERT_TRUE(k) << along;
-        EXPECT_NEAR(ways.at(*k), along, 1) << along;
-    }
-    EXPECT_FALSE(TrailDistances(Grid<float>(covered.geometry, none), {1010, 2070}).cell_on_way({1110, 2010}, 5));
-}
-
 }  // namespace
 }  // namespace talus::observe
