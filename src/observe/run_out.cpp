@@ -37,13 +37,6 @@ double plan_distance(const PlanPoint& a, const PlanPoint& b) {
     return std::hypot(a.x - b.x, a.y - b.y);
 }
 
-/// Of the ground, m; also just outside the terrain, where the centre of a map cell may lie that debris left it through.
-double ground_height(const terrain::Terrain& terrain, const PlanPoint& p) {
-    LocalPoint at = terrain.frame().to_local({p.x, p.y, 0});
-    at.z = terrain.sample(at.x, at.y).height;
-    return terrain.frame().to_world(at).z;
-}
-
 /// A place that debris reached.
 struct Reach {
     double along_flow, straight;  ///< m from the crown
@@ -99,7 +92,9 @@ RunOut measure_run_out(const sim::Ground& ground, const sim::State& state, const
             if (std::isnan(ways.at(k))) continue;
             const auto columns = static_cast<std::size_t>(covered.geometry.columns);
             const PlanPoint p = covered.geometry.centre(static_cast<int>(k % columns), static_cast<int>(k / columns));
-            reached.push_back(reach(ways.at(k), {p.x, p.y, ground_height(ground.terrain, p)}));
+            const double ground_there = ground.terrain.elevation_at(p);
+            // The cells that it left through may have their centres beyond the edge.
+            if (!std::isnan(ground_there)) reached.push_back(reach(ways.at(k), {p.x, p.y, ground_there}));
         }
     }
     if (reached.empty()) return run_out;

@@ -81,14 +81,18 @@ void TrailDistances::settle(Cell cell) {
             shortest = length_[k] = length_at(upstream_[k]) + distance(centre(upstream_[k]), centre(cell));
             bend_[k] = cell;
         }
+        const auto try_from = [&](Cell at, double way) {
+            if (way >= shortest) return;
+            shortest = length_[k] = way;
+            bend_[k] = at;
+        };
         for_each_neighbour(geometry_, cell, [&](Cell other) {
             const auto n = static_cast<std::size_t>(other);
             if (settled_[n] == 0) return;
-            const double way = length_[n] + distance(centre(other), centre(cell));
-            if (way >= shortest) return;
-            shortest = way;
-            length_[k] = way;
-            bend_[k] = other;
+            try_from(other, length_[n] + distance(centre(other), centre(cell)));
+            if (in_sight(bend(other), centre(cell))) {
+                try_from(bend_[n], bend_length(other) + distance(bend(other), centre(cell)));
+            }
         });
     }
     if (bend_[k] != cell) upstream_[k] = bend_[k];

@@ -131,6 +131,34 @@ TEST(FollowDebris, has_no_velocity_where_other_debris_was_beyond_the_front_befor
     EXPECT_GT(none_there, 20);
 }
 
+TEST(FollowDebris, does_not_cross_dry_ground_because_of_an_isolated_cell) {
+    const std::vector<PlanPoint> hairpin = {{1010, 2020}, {1200, 2020}, {1200, 2100}, {1010, 2100}};
+    Trail plain(hairpin), splashed(hairpin);
+    Observation& o = splashed.o;
+    const std::size_t k = o.maps.peak_depth.geometry.index(100, 60);  // between the arms
+    ASSERT_TRUE(std::isnan(o.maps.peak_depth.values[k]));
+    o.maps.peak_depth.values[k] = 0.05F;  // too thin to arrive
+    o.maps.peak_speed.values[k] = 1;
+    o.run_out.along_flow = TrailDistances(o.maps.peak_depth, o.run_out.crown).to(o.run_out.toe);
+    EXPECT_EQ(o.run_out.along_flow, plain.o.run_out.along_flow);
+    EXPECT_GT(o.run_out.along_flow, 400);
+    const Observation &expected = plain.follow(), &found = splashed.follow();
+    ASSERT_TRUE(found.followed_path);
+    EXPECT_EQ(found.run_out.front_chainage, expected.run_out.front_chainage);
+    ASSERT_EQ(found.front.size(), expected.front.size());
+    for (std::size_t i = 0; i < found.front.size(); ++i) {
+        EXPECT_EQ(found.front[i].arrival_time, expected.front[i].arrival_time) << i;
+    }
+}
+
+TEST(FollowDebris, has_a_front_chainage_where_releases_cover_the_whole_path) {
+    Trail trail({{1010, 2070}, {1230, 2070}});
+    for (float& time : trail.o.maps.arrival_time.values) time = std::isnan(time) ? time : 0;
+    const Observation& o = trail.follow();
+    EXPECT_TRUE(o.front.empty());
+    EXPECT_NEAR(o.run_out.front_chainage, o.followed_path->length(), 3);
+}
+
 TEST(FollowDebris, goes_with_the_branch_that_leads_to_the_toe) {
     Trail trail({{1010, 2070}, {1230, 2070}});
     trail.cover(terrain::FlowPath({{1060, 2070}, {1110, 2130}}, 12), 50 / trail_speed);

@@ -176,5 +176,45 @@ TEST(FrontTracker, no_velocity_where_the_front_jumps_along_a_corner_of_a_traced_
     }
 }
 
+/// A front at 10 m/s that map cells of 2.5 m see arrive in two rows of them at a time, the second row early; the debris
+/// there moves at 9 m/s.
+FrontRecord seen_by_cells() {
+    FrontRecord front;
+    front.interval = 0.5;
+    front.window = 10;
+    front.resolution = 10;
+    for (int row = 0; row <= 200; ++row) {
+        const double chainage = row * front.interval, cell = std::floor(chainage / 5) * 5, beyond = chainage - cell;
+        front.arrival.push_back((beyond < 2.5 ? cell + 1.6 * beyond : cell + 4 + 0.4 * (beyond - 2.5)) / 10);
+        front.head.push_back({9, 9});
+    }
+    return front;
+}
+
+TEST(FrontRecord, has_a_velocity_everywhere_though_cells_are_reached_at_uneven_times) {
+    FrontRecord front = seen_by_cells();
+    for (const FrontSample& s : front.samples()) EXPECT_NEAR(s.front_velocity, 10, 1.5) << s.chainage;
+    front.resolution = 0;
+    const std::vector<FrontSample> samples = front.samples();
+    EXPECT_TRUE(std::any_of(samples.begin(), samples.end(), [](const auto& s) { return std::isnan(s.front_velocity); }))
+        << "the case is one in which rows alone mislead";
+}
+
+TEST(FrontRecord, has_none_where_a_front_seen_by_cells_jumps) {
+    FrontRecord front = seen_by_cells();
+    for (std::size_t row = 100; row < front.arrival.size(); ++row) front.arrival[row] -= 2;  // 20 m on at once
+    for (std::size_t row = 100; row-- > 0;) front.arrival[row] = std::min(front.arrival[row], front.arrival[row + 1]);
+    int none_at_the_jump = 0;
+    for (const FrontSample& s : front.samples()) {
+        if (std::isnan(s.front_velocity)) {
+            ++none_at_the_jump;
+            EXPECT_TRUE(s.chainage > 20 && s.chainage < 60) << s.chainage;
+        } else {
+            EXPECT_LE(s.front_velocity, fastest_front * 9 + 1e-9) << s.chainage;
+        }
+    }
+    EXPECT_GE(none_at_the_jump, 40);
+}
+
 }  // namespace
 }  // namespace talus::observe

@@ -85,5 +85,21 @@ TEST(RunOut, goes_to_the_edge_at_least_where_debris_left_the_terrain) {
     }
 }
 
+TEST(RunOut, ends_on_the_terrain_where_debris_left_through_cells_that_reach_beyond_it) {
+    const sim::Ground ground = test::make_ground(0.5);
+    sim::State state = block(0.4, -50, 0, 10, 10, 3);
+    const ReleasedMass released = measure_release(ground, state);
+    // Cells of 5 m: the centres of the last ones lie at 1101.5 m, those of the terrain's own at 1099 m.
+    Grid<float> covered(GridGeometry{939, 1990, 5, 33, 4}, 1);
+    ASSERT_TRUE(std::isnan(ground.terrain.elevation_at(covered.geometry.centre(32, 2))));
+    state.outflow = state.seeded;
+    state.count = 0;
+    const RunOut run_out = measure_run_out(ground, state, covered, released, never);
+    EXPECT_TRUE(run_out.at_least);
+    EXPECT_EQ(run_out.toe.x, 1096.5);
+    EXPECT_NEAR(run_out.drop, released.crown.z - (50 + 0.5 * 3.5), 1e-3);
+    EXPECT_NEAR(std::tan(run_out.runout_angle), run_out.drop / run_out.along_flow, 1e-9);
+}
+
 }  // namespace
 }  // namespace talus::observe
