@@ -109,7 +109,7 @@ Arrival first_arrival(const HazardMaps& maps, const PlanPoint& p) {
 FrontRecord record_front(const HazardMaps& maps, const terrain::FlowPath& path, const params::OutputSpec& outputs) {
     FrontRecord front;
     front.interval = outputs.chainage_interval;
-    front.resolution = 2 * reach_cells * maps.arrival_time.geometry.cell;
+    front.resolution = resolved_cells * maps.arrival_time.geometry.cell;
     front.window = std::max(outputs.front_velocity_window, front.resolution);
     for (std::size_t k = 0; static_cast<double>(k) * front.interval <= path.length(); ++k) {
         const Arrival arrival = first_arrival(maps, path.point_at(static_cast<double>(k) * front.interval));

@@ -22,6 +22,9 @@ namespace talus::observe {
 /// grows faster than the distance travelled, by half at a third of the bend radius from the path.
 inline constexpr double fastest_front = 1.5;
 
+/// When map cells are reached says little about the velocity of a front over less than so many of them.
+inline constexpr double resolved_cells = 4;
+
 /// Slope of chainage against arrival time (s; NaN: none) by least squares over the rows [first, last], m/s. The rows
 /// are `interval` m of chainage apart. NaN where all arrived at the same time.
 [[nodiscard]] double fitted_velocity(std::span<const double> arrival, std::size_t first, std::size_t last,

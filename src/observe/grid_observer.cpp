@@ -18,9 +18,7 @@ constexpr double thinnest_share = 0.1;
 constexpr double parcels = 20000;
 /// Debris this near to a cell is at the front when it arrives there, in cells. The cell's own speed says little: its
 /// debris is still thin, and resistance slows a thin layer most.
-constexpr int head_cells = 2;
-/// A place that the front reached is known by whole cells; over so many its velocity is.
-constexpr double resolved_cells = 4;
+constexpr int head_cells = 0;
 
 float speed_of(float u, float v, float slope_x, float slope_y) {
     const float w = u * slope_x + v * slope_y;
@@ -268,10 +266,12 @@ TimeSample GridObserver::sample(const depth::Solver& solver, double held, double
     TimeSample s;
     const GridGeometry& g = solver.geometry();
     const double area = g.cell * g.cell;
+    double front = never;
     for (int row = 0; row < g.rows; ++row) {
         for (int column = 0; column < g.columns; ++column) {
             const double depth = solver.depth_at(column, row);
             if (!(depth > 0)) continue;
+            if (depth > outputs_.arrival_depth) front = std::fmax(front, chainage_[g.index(column, row)]);
             const double speed = speed_of(solver.u_at(column, row), solver.v_at(column, row),
                                           solver.slope_x_at(column, row), solver.slope_y_at(column, row));
             const double volume = depth * area;
@@ -287,7 +287,7 @@ TimeSample GridObserver::sample(const depth::Solver& solver, double held, double
     s.volume_left = solver.volume_left();
     s.volume_released = volume_released_ + held;
     s.volume_entrained = volume_entrained_;
-    s.front_chainage = front_;
+    s.front_chainage = front;
     s.time_step = solver.time_step();
     s.steps_per_second = steps_per_second;
     return s;
