@@ -18,7 +18,7 @@ constexpr double thinnest_share = 0.1;
 constexpr double parcels = 20000;
 /// Debris this near to a cell is at the front when it arrives there, in cells. The cell's own speed says little: its
 /// debris is still thin, and resistance slows a thin layer most.
-constexpr int head_cells = 0;
+constexpr int head_cells = 2;
 
 float speed_of(float u, float v, float slope_x, float slope_y) {
     const float w = u * slope_x + v * slope_y;
