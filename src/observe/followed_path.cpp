@@ -105,7 +105,7 @@ Arrival first_arrival(const HazardMaps& maps, const PlanPoint& p) {
     return first;
 }
 
-/// The front along the path, to the last place with an arrival.
+/// The front along the path, to the last place with an arrival; 0 where the releases lay.
 FrontRecord record_front(const HazardMaps& maps, const terrain::FlowPath& path, const params::OutputSpec& outputs) {
     FrontRecord front;
     front.interval = outputs.chainage_interval;
@@ -124,35 +124,36 @@ FrontRecord record_front(const HazardMaps& maps, const terrain::FlowPath& path, 
         front.arrival[k - 1] = front.arrival[k];
         front.head[k - 1] = front.head[k];
     }
-    // What the releases cover is no arrival.
-    for (double& time : front.arrival) time = time > 0 ? time : never;
     return front;
 }
 
-/// Chainages of the front along another path.
-void move_chainages(const terrain::FlowPath& from, const terrain::FlowPath& to, std::vector<TimeSample>& timeseries) {
-    for (TimeSample& sample : timeseries) {
-        if (std::isnan(sample.front_chainage)) continue;
-        const auto at = to.locate(from.point_at(sample.front_chainage));
-        sample.front_chainage = at ? at->chainage : never;
+/// The chainage of the front in every row.
+void tell_front(const FrontRecord& front, std::vector<TimeSample>& timeseries) {
+    for (TimeSample& row : timeseries) {
+        const auto next = std::upper_bound(front.arrival.begin(), front.arrival.end(), row.time);
+        row.front_chainage = next == front.arrival.begin()
+                                 ? never
+                                 : front.interval * static_cast<double>(next - front.arrival.begin() - 1);
     }
 }
 
 }  // namespace
 
-void follow_debris(const sim::Ground& ground, const terrain::FlowPath& traced, double corridor_width,
-                   const params::OutputSpec& outputs, Observation& observation) {
+void follow_debris(const sim::Ground& ground, double corridor_width, const params::OutputSpec& outputs,
+                   Observation& observation) {
     const HazardMaps& maps = observation.maps;
     RunOut& run_out = observation.run_out;
     const double cell = maps.peak_depth.geometry.cell;
     if (!(run_out.along_flow > shortest_cells * cell)) return;
     const terrain::FlowPath path(find_course(maps, run_out), corridor_width);
 
-    const FrontRecord front = record_front(maps, path, outputs);
-    observation.front = front.samples();
+    FrontRecord front = record_front(maps, path, outputs);
+    tell_front(front, observation.timeseries);
     run_out.front_chainage =
         front.arrival.empty() ? never : front.interval * static_cast<double>(front.arrival.size() - 1);
-    move_chainages(traced, path, observation.timeseries);
+    // What the releases cover is no arrival.
+    for (double& time : front.arrival) time = time > 0 ? time : never;
+    observation.front = front.samples();
     observation.erosion = measure_erosion(ground, path, outputs.chainage_interval);
     observation.followed_path = path;
 }

@@ -17,7 +17,7 @@ constexpr float none = std::numeric_limits<float>::quiet_NaN();
 constexpr double trail_speed = 6;  // m/s
 
 /// Debris at `trail_speed` along a line within 6 m of it, on cells of 1 m: the observation of a run whose toe is the
-/// line's end. `traced` before the run: straight from the crown to the east.
+/// line's end.
 struct Trail {
     explicit Trail(const std::vector<PlanPoint>& points) : line(points, 12) {
         const Grid<float> empty(GridGeometry{1000, 2000, 1, 260, 140}, none);
@@ -46,7 +46,7 @@ struct Trail {
         }
     }
     [[nodiscard]] Observation& follow() {
-        follow_debris(ground, terrain::FlowPath({{1010, 2070}, {1250, 2070}}, 300), 40, outputs, o);
+        follow_debris(ground, 40, outputs, o);
         return o;
     }
 
@@ -172,19 +172,20 @@ TEST(FollowDebris, goes_with_the_branch_that_leads_to_the_toe) {
     }
 }
 
-TEST(FollowDebris, moves_all_chainages_to_the_new_path) {
+TEST(FollowDebris, tells_where_the_front_was_over_time) {
     Trail trail(winding_line());
-    TimeSample sample;
-    sample.front_chainage = 140;  // along the traced path: where the line crosses it at x = 1150
-    TimeSample beside;
-    beside.front_chainage = 105;  // 30 m from the line
-    trail.o.timeseries = {sample, TimeSample{}, beside};
+    TimeSample before, early, late, after;
+    before.time = 0;
+    early.time = 10;
+    early.front_chainage = 7;  // along another path
+    late.time = 30;
+    after.time = 1000;
+    trail.o.timeseries = {before, early, late, after};
     const Observation& o = trail.follow();
-    const double expected = o.followed_path->locate({1150, 2070})->chainage;
-    EXPECT_GT(expected, 150);
-    EXPECT_EQ(o.timeseries[0].front_chainage, expected);
-    EXPECT_TRUE(std::isnan(o.timeseries[1].front_chainage));
-    EXPECT_TRUE(std::isnan(o.timeseries[2].front_chainage));
+    EXPECT_LT(o.timeseries[0].front_chainage, 4) << "what the release covers";
+    EXPECT_NEAR(o.timeseries[1].front_chainage, 10 * trail_speed, 8);
+    EXPECT_NEAR(o.timeseries[2].front_chainage, 30 * trail_speed, 8);
+    EXPECT_EQ(o.timeseries[3].front_chainage, o.run_out.front_chainage);
 }
 
 TEST(FollowDebris, leaves_all_as_it_was_where_debris_hardly_left_its_release) {
