@@ -73,7 +73,7 @@ TEST_F(DepthAveragedRun, has_a_front_velocity_at_every_chainage_where_a_viscous_
     double before = front.front().front_velocity;
     for (const observe::FrontSample& s : front) {
         if (s.chainage > 40) {  // clear of the release, whose rear still stands
-            EXPECT_NEAR(s.front_velocity, s.particle_speed, 0.3 * s.particle_speed) << s.chainage;
+            EXPECT_NEAR(s.front_velocity, s.particle_speed, 0.5 * s.particle_speed) << s.chainage;
         }
         EXPECT_NEAR(s.front_velocity / before, 1, 0.2) << s.chainage;
         before = s.front_velocity;
