@@ -18,9 +18,8 @@ namespace talus::observe {
 /// jump.
 ///
 /// Sets followed_path, front, erosion and all front chainages of `observation`, whose maps and run-out are known.
-/// `corridor_width` in m. `traced`: the path that the front chainages refer to so far; may be empty. Nothing changes
-/// where debris hardly left its release.
-void follow_debris(const sim::Ground& ground, const terrain::FlowPath& traced, double corridor_width,
-                   const params::OutputSpec& outputs, Observation& observation);
+/// `corridor_width` in m. Nothing changes where debris hardly left its release.
+void follow_debris(const sim::Ground& ground, double corridor_width, const params::OutputSpec& outputs,
+                   Observation& observation);
 
 }  // namespace talus::observe

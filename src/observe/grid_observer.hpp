@@ -51,6 +51,8 @@ class GridObserver {
 
   private:
     void measure_cells(const depth::Solver& solver);
+    /// The debris around a cell that it just arrived in.
+    [[nodiscard]] FrontRecord::Head head_at(const depth::Solver& solver, std::size_t cell) const;
     void read_gauges(const depth::Solver& solver, bool row);
     [[nodiscard]] FrontRecord front_record() const;
     [[nodiscard]] HazardMaps maps(const depth::Solver& solver) const;
@@ -58,9 +60,11 @@ class GridObserver {
     params::OutputSpec outputs_;
     terrain::FlowPath flow_path_;
     double density_;
-    Grid<float> peak_depth_, peak_speed_, arrival_time_, arrival_speed_;  ///< 0 and NaN: not reached
-    Grid<float> released_;                                                ///< m, by cell
-    std::vector<float> chainage_;                                         ///< by cell; NaN: not on the path
+    Grid<float> peak_depth_, peak_speed_, arrival_time_;  ///< 0 and NaN: not reached
+    Grid<float> arrival_speed_;                           ///< m/s, mean of the debris around a cell on arrival
+    std::vector<float> arrival_fastest_;                  ///< m/s, and its largest
+    Grid<float> released_;                                ///< m, by cell
+    std::vector<float> chainage_;                         ///< by cell; NaN: not on the path
     GridStructures structures_;
     GaugeRecorder gauges_;
     std::vector<TimeSample> timeseries_;
