@@ -33,9 +33,9 @@ namespace fs = std::filesystem;
 
 constexpr const char* compare_help = R"(
 Runs the scene with particles and with the depth-averaged model, a second opinion that costs seconds. The result folder
-holds one page, report.html, with maps of both and their difference, front and run-out, the agreement of the affected
-area, the structures hit and where the models differ; results.json has the same as data. The folders particles and
-depth_averaged hold the whole result of each run.
+holds one page, report.html: where the models differ, the largest differences first; maps of peak depth, speed and
+dynamic pressure of both and their differences; the agreement of the affected area, front and run-out, the structures
+hit. results.json has the same as data. The folders particles and depth_averaged hold the whole result of each run.
 )";
 
 /// Wall time of the depth-averaged run over that of the particles, before it is known: that of the built-in scene.
@@ -139,17 +139,14 @@ int compare_command(const CompareArguments& arguments) {
         if (both.run == 1) both.name = "particles";
         progress.report(now, both);
     };
-    const auto particles = run_scene(job->input.scene, options);
+    auto particles = run_scene(job->input.scene, options);
     progress.clear();
     if (!particles) return fail(exit_code::bad_input, particles.error().message);
     clock.base_ended(*particles);
-    // Chainages of both are along one path.
-    take_followed_path(job->input.scene, *particles);
-    job->grid_scene.flow_path = job->input.scene.flow_path;
-    job->grid_scene.flow_path_origin = job->input.scene.flow_path_origin;
-    const auto grid = run_scene(job->grid_scene, options);
+    auto grid = run_scene(job->grid_scene, options);
     progress.clear();
     if (!grid) return fail(exit_code::bad_input, grid.error().message);
+    take_one_path(job->input.scene, *particles, job->grid_scene, *grid);
 
     progress.say("writing maps, tables and reports");
     const report::BothModels models{job->input.scene, *particles, job->grid_scene, *grid};

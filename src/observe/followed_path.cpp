@@ -153,23 +153,37 @@ void move_chainages(const terrain::FlowPath& from, const terrain::FlowPath& to, 
     }
 }
 
+/// Takes a path, with the front along it by the maps.
+void take_path(const terrain::FlowPath& path, const terrain::FlowPath& so_far, const params::OutputSpec& outputs,
+               Observation& observation) {
+    const HazardMaps& maps = observation.maps;
+    const double interval = outputs.chainage_interval;
+    const std::vector<Arrival> arrivals = find_arrivals(maps, path, interval);
+    observation.front =
+        front_of(arrivals, interval, std::max(outputs.front_velocity_window, 4 * maps.peak_depth.geometry.cell));
+    observation.run_out.front_chainage = arrivals.empty() ? never : arrivals.back().chainage;
+    move_chainages(so_far, path, observation.timeseries);
+    observation.followed_path = path;
+}
+
 }  // namespace
 
 void follow_debris(const sim::Ground& ground, const terrain::FlowPath& traced, double corridor_width,
                    const params::OutputSpec& outputs, Observation& observation) {
     const HazardMaps& maps = observation.maps;
-    RunOut& run_out = observation.run_out;
+    const RunOut& run_out = observation.run_out;
     const double cell = maps.peak_depth.geometry.cell;
     if (!(run_out.along_flow > shortest_cells * cell)) return;
     const terrain::FlowPath path(find_course(maps, run_out), corridor_width);
+    take_path(path, traced, outputs, observation);
+    observation.erosion = measure_erosion(ground, path, outputs.chainage_interval);
+}
 
-    const double interval = outputs.chainage_interval;
-    const std::vector<Arrival> arrivals = find_arrivals(maps, path, interval);
-    observation.front = front_of(arrivals, interval, std::max(outputs.front_velocity_window, 4 * cell));
-    run_out.front_chainage = arrivals.empty() ? never : arrivals.back().chainage;
-    move_chainages(traced, path, observation.timeseries);
-    observation.erosion = measure_erosion(ground, path, interval);
-    observation.followed_path = path;
+void measure_along(const terrain::FlowPath& path, const terrain::FlowPath& so_far, const params::OutputSpec& outputs,
+                   Observation& observation) {
+    take_path(path, so_far, outputs, observation);
+    if (observation.erosion.chainage.empty()) return;  // no bed
+    set_upstream_volumes(path, outputs.chainage_interval, observation.erosion);
 }
 
 }  // namespace talus::observe

@@ -23,4 +23,10 @@ namespace talus::observe {
 void follow_debris(const sim::Ground& ground, const terrain::FlowPath& traced, double corridor_width,
                    const params::OutputSpec& outputs, Observation& observation);
 
+/// Moves a run's front, erosion and all front chainages to the path that the debris of another run of the scene
+/// followed. `so_far`: the path that they refer to; may be empty. Where its debris did not come to that path, it has no
+/// front there.
+void measure_along(const terrain::FlowPath& path, const terrain::FlowPath& so_far, const params::OutputSpec& outputs,
+                   Observation& observation);
+
 }  // namespace talus::observe

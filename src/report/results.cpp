@@ -10,6 +10,7 @@
 
 #include "core/angle.hpp"
 #include "core/number_or_null.hpp"
+#include "observe/peaks.hpp"
 #include "report/hazard_map.hpp"
 #include "report/number_text.hpp"
 #include "sim/compression.hpp"
@@ -17,24 +18,7 @@
 namespace talus::report {
 namespace {
 
-struct Peak {
-    double value = observe::never;
-    PlanPoint at;
-};
-
-Peak peak_of(const Grid<float>& map) {
-    Peak peak;
-    for (int r = 0; r < map.geometry.rows; ++r) {
-        for (int c = 0; c < map.geometry.columns; ++c) {
-            const double v = map.at(c, r);
-            if (std::isnan(v) || v <= peak.value) continue;
-            peak = {v, map.geometry.centre(c, r)};
-        }
-    }
-    return peak;
-}
-
-std::string place_of(const scene::Scene& scene, const Peak& peak) {
+std::string place_of(const scene::Scene& scene, const observe::Peak& peak) {
     return std::isnan(peak.value) ? "no debris mapped" : place(scene, peak.at);
 }
 
@@ -170,8 +154,7 @@ Json key_figures(const scene::Scene& scene, const run::RunResult& result) {
     }
     all.push_back(key_figure("buildings_hit", "Buildings hit", hits.hit, "f0", fmt::format("of {}", hits.all),
                              hits_note, hits.hit > 0));
-    const Peak depth = peak_of(o.maps.peak_depth), speed = peak_of(o.maps.peak_speed),
-               pressure = peak_of(o.maps.peak_pressure);
+    const auto [depth, speed, pressure] = measure_peaks(o.maps);
     add("peak_depth_m", "Peak flow depth", depth.value, "f1", "m", place_of(scene, depth));
     add("peak_speed_mps", "Peak speed", speed.value, "f1", "m/s", place_of(scene, speed));
     add("peak_dynamic_pressure_kPa", "Peak dynamic pressure", pressure.value / 1e3, "s3", "kPa",

@@ -196,7 +196,7 @@ Json comparison(const run::Comparison& comparison, const scene::Scene& scene, co
         named.push_back({{"name", variant.name}, {"sets", variant.overrides}, {"about", variant.about}});
     }
     const bool velocities = std::any_of(comparison.quantities.begin(), comparison.quantities.end(),
-                                        [](const run::Quantity& q) { return q.unit == "m/s"; });
+                                        [](const run::Quantity& q) { return q.key.starts_with("front_velocity"); });
     Json missing = Json::array();
     for (const run::Comparison::Row& row : comparison.rows) {
         if (!row.run.result) missing.push_back({{"name", row.run.variant.name}, {"why", row.run.missing}});
