@@ -330,6 +330,7 @@ Result<Json> map_figures(const scene::Scene& scene, const MapContent& content) {
         out["layers"].push_back(
             {{"file", layer.file},
              {"name", shown.tab},
+             {"group", shown.group},
              {"svg", figure_svg(width, height, "Map: " + shown.tab, picture, 1.04 * width, print_width(frame))},
              {"about", shown.caption},
              {"classed", !layer.categories.empty()},

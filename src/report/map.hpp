@@ -40,6 +40,7 @@ struct MapLayer {
     std::string caption;                ///< a sentence
     int digits = 2;                     ///< of values
     std::string legend{};               ///< over the classes of a map without a measure
+    std::string group{};                ///< begins the tabs of maps that belong together; empty: none
 };
 
 /// How the maps' buildings are coloured: classes 0 (not at all) to 3.

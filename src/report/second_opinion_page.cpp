@@ -93,7 +93,8 @@ void add_layers(const BothModels& models, const Measure& measure, MapContent& co
         style.file = fmt::format("{}_{}", measure.file, result->depth_averaged() ? "depth_averaged" : "particles");
         content.layers.push_back({style, &(result->observation.maps.*style.grid),
                                   fmt::format("{}, {}", measure.name, model),
-                                  fmt::format("Greatest {} at each place, {}.", measure.what, words), measure.digits});
+                                  fmt::format("Greatest {} at each place, {}.", measure.what, words), measure.digits,
+                                  "", measure.name});
     }
     const HazardMap difference = difference_style(*known, measure);
     content.layers.push_back(
@@ -101,7 +102,7 @@ void add_layers(const BothModels& models, const Measure& measure, MapContent& co
          fmt::format("Depth-averaged less particles, as means over the same cells; blue where the depth-averaged model "
                      "is {}, orange where the particles are.{}",
                      measure.deeper, largest_text(models, measure, *known)),
-         measure.digits});
+         measure.digits, "", measure.name});
 }
 
 }  // namespace
