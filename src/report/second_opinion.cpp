@@ -252,13 +252,16 @@ std::vector<std::string> differences(const BothModels& models, const run::Second
 
 Json second_opinion_results(const BothModels& models, const run::SecondOpinion& opinion) {
     Json all = results_head("talus comparison", models.scene);
-    const Json of_particles = status(models.particles), of_grid = status(models.depth_averaged);
+    const run::RunVerdict particles = judge(models.particles), grid = judge(models.depth_averaged);
+    const Json of_particles = status(models.particles, particles), of_grid = status(models.depth_averaged, grid);
     const bool partial = of_particles["partial"].get<bool>() || of_grid["partial"].get<bool>();
     all.update({{"status",
                  {{"name", partial ? "a run did not come to its end" : "complete"},
                   {"partial", partial},
+                  {"beyond_limits", beyond_limits(run::judge_together({particles, grid}))},
                   {"particles", of_particles},
                   {"depth_averaged", of_grid}}},
+                {"verdict", {{"particles", verdict_json(particles)}, {"depth_averaged", verdict_json(grid)}}},
                 {"agreement",
                  {{"intersection_over_union", number_or_null<Json>(opinion.area.intersection_over_union())},
                   {"both_m2", opinion.area.both},
@@ -296,7 +299,7 @@ Result<std::string> second_opinion_report(const BothModels& models, const run::S
     content.farthest_chainage =
         std::fmax(content.farthest_chainage, models.depth_averaged.observation.run_out.front_chainage);
     content.cell = opinion.difference.geometry.cell;
-    content.not_converged = numerical_verdict(models.particles, {}).converged == run::Answer::no;
+    if (!results["status"]["beyond_limits"].is_null()) content.beyond_limits = results["status"]["beyond_limits"];
     content.buildings.title = "Structures hit in";
     for (std::size_t k = 0; k < hit_by_names.size(); ++k) content.buildings.class_names.at(k) = hit_by_names.at(k);
     content.buildings.classes.clear();
@@ -335,7 +338,8 @@ Result<std::string> second_opinion_report(const BothModels& models, const run::S
     page["report_name"] = "two models compared";
     page["masthead"] = "Landslide run-out, two models compared";
     page["maps"] = std::move(maps);
-    page["verdict"] = {{"not_converged", content.not_converged}};
+    page["verdicts"] = Json::array({named_verdict("Particles", results["verdict"]["particles"]),
+                                    named_verdict("Depth-averaged", results["verdict"]["depth_averaged"])});
     return render(report_files::second_opinion_html, page);
 }
 
