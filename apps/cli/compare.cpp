@@ -99,6 +99,12 @@ Status write_all(Job& job, const report::BothModels& models, const run::SecondOp
 std::string text_of(const report::BothModels& models, const std::vector<std::string>& differences,
                     const fs::path& shown) {
     std::string text = models.scene.spec.scene.title + "\n";
+    for (const auto& [name, result] :
+         {std::pair{"particles", &models.particles}, {"depth-averaged", &models.depth_averaged}}) {
+        const run::RunVerdict verdict = judge(*result);
+        if (!verdict.within_limits()) text += fmt::format("  {} {}\n", name, verdict.text());
+        for (const std::string& warning : verdict.warnings()) text += "    " + warning + "\n";
+    }
     for (const std::string& sentence : differences) text += "  " + sentence + "\n";
     return text + fmt::format("  particles {:.1f} s, depth-averaged {:.1f} s of wall time\n  report {}\n",
                               models.particles.wall_time, models.depth_averaged.wall_time,
@@ -109,6 +115,7 @@ std::string json_of(const report::BothModels& models, const report::Json& result
     const auto run = [](const run::RunResult& result) {
         return report::Json{
             {"status", status_name(result.status)},
+            {"verdict", verdict_json(judge(result))},
             {"hash", to_hex(result.hash)},
             {"wall_time_s", result.wall_time},
             {"run_out_along_flow_m", number_or_null<report::Json>(result.observation.run_out.along_flow)}};

@@ -12,6 +12,7 @@
 #include "core/number_or_null.hpp"
 #include "products/results_json.hpp"
 #include "report/results.hpp"
+#include "run/verdict.hpp"
 #include "sim/compression.hpp"
 #include "variant_plan.hpp"
 #include "zoom_text.hpp"
@@ -64,15 +65,11 @@ std::string compression_text(const observe::Compression& c) {
 }
 
 std::string layers_text(const scene::Scene& scene, const observe::FlowThickness& flow, double spacing) {
-    const double median = flow.median / spacing;
     const std::string asked = scene.thinnest ? fmt::format("{:.4g} asked for over {}; ",
                                                            *scene.spec.solver.target_layers, scene.thinnest->name)
                                              : "";
-    return fmt::format(
-        "{}the flow was {:.1f} particles thick in the median of the trail, {:.1f} in its thinnest tenth{}", asked,
-        median, flow.thin / spacing,
-        median < observe::FlowThickness::min_layers ? "; WARNING: fewer than 2, depths, speeds and forces mean little"
-                                                    : "");
+    return fmt::format("{}the flow was {:.1f} particles thick in the median of the trail, {:.1f} in its thinnest tenth",
+                       asked, flow.median / spacing, flow.thin / spacing);
 }
 
 /// What to change where compression is above its limits.
@@ -84,6 +81,16 @@ std::string remedy(const params::SolverSpec& solver) {
 
 std::string line(const char* label, const std::string& text) {
     return fmt::format("  {:<16} {}\n", label, text);
+}
+
+std::string verdict_text(const scene::Scene& scene, const run::RunVerdict& verdict) {
+    if (verdict.within_limits()) return line("verdict", verdict.text());
+    std::string text = line("VERDICT", verdict.text());
+    for (const run::Check& check : verdict.checks) {
+        if (check.state != run::CheckState::beyond) continue;
+        text += line("", check.text + (check.key == "compression" ? remedy(scene.spec.solver) : ""));
+    }
+    return text;
 }
 
 }  // namespace
@@ -155,12 +162,7 @@ std::string summary_text(const scene::Scene& scene, const run::RunResult& result
         text += line("layers", layers_text(scene, seen.thickness, result.particle_spacing));
     }
     if (!result.depth_averaged()) text += line("compression", compression_text(seen.compression));
-    const run::NumericalVerdict verdict = numerical_verdict(result, comparisons);
-    if (verdict.converged == run::Answer::no) {
-        const bool squeezed = !seen.compression.within_limits();
-        text += line("NOT CONVERGED",
-                     verdict.text.substr(verdict.text.find(": ") + 2) + (squeezed ? remedy(scene.spec.solver) : ""));
-    }
+    text += verdict_text(scene, judge(result, comparisons));
     for (const run::Comparison& comparison : comparisons) text += comparison_text(comparison, result);
     text += line("report", (output / "report.html").string());
     return text;
@@ -191,6 +193,7 @@ std::string summary_json(const scene::Scene& scene, const run::RunResult& result
         {"event", "result"},
         {"status", status_name(result.status)},
         {"stop_reason", result.stop_reason},
+        {"verdict", verdict_json(judge(result, comparisons))},
         {"title", scene.spec.scene.title},
         {"reconstruction", scene.spec.scene.reconstruction},
         {"output", output.string()},

@@ -60,7 +60,7 @@ struct MapContent {
     BuildingMarks buildings;
     std::vector<MapLayer> layers;
     std::shared_ptr<const Grid<float>> made{};  ///< the grid of a layer that the maps alone have
-    bool not_converged = false;                 ///< said on every map
+    std::string beyond_limits{};                ///< said on every map; empty: nothing is
     std::optional<Polygon> zoom{};              ///< all results are of this area
 };
 

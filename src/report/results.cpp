@@ -1,7 +1,6 @@
 #include "report/results.hpp"
 
 #include <algorithm>
-#include <cctype>
 #include <chrono>
 #include <cmath>
 
@@ -57,22 +56,33 @@ std::string plural(std::size_t n, std::string_view word) {
     return fmt::format("{} {}{}", n, word, n == 1 ? "" : "s");
 }
 
-Json status(const run::RunResult& result) {
+Json status(const run::RunResult& result, const run::RunVerdict& verdict) {
     const bool fault = result.status == run::RunStatus::fault, complete = result.status == run::RunStatus::complete;
     return {{"name", complete ? "complete"
                      : fault  ? "fault"
                               : "interrupted"},
             {"partial", !complete},
+            {"beyond_limits", beyond_limits(verdict)},
             {"fault", fault},
             {"stop_reason", result.stop_reason},
             {"simulated_time_s", result.simulated_time}};
 }
 
-Json verdict(const run::NumericalVerdict& said) {
-    const Json converged = said.converged == run::Answer::unknown ? Json() : Json(said.converged == run::Answer::yes);
-    std::string text = said.text;
-    text[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(text[0])));
-    return {{"converged", converged}, {"not_converged", said.converged == run::Answer::no}, {"text", text}};
+Json beyond_limits(const run::RunVerdict& verdict) {
+    return verdict.within_limits() ? Json() : Json(verdict.text());
+}
+
+Json named_verdict(std::string_view name, const Json& verdict) {
+    Json shown = {{"name", name}, {"within_limits", verdict["within_limits"]}, {"checks", Json::array()}};
+    for (const Json& check : verdict["checks"]) {
+        // The depth-averaged model has no such thing.
+        if (check["key"] == "compression" && check["state"] == "not_measured") continue;
+        shown["checks"].push_back({{"name", check["name"]},
+                                   {"beyond", check["state"] == "beyond"},
+                                   {"not_measured", check["state"] == "not_measured"},
+                                   {"text", check["text"]}});
+    }
+    return shown;
 }
 
 Json compression(const scene::Scene& scene, const run::RunResult& result) {
@@ -188,15 +198,7 @@ Json layers(const scene::Scene& scene, const run::RunResult& result) {
                 enough ? "" : warning, enough);
 }
 
-Json numerics(const run::RunResult& result, const run::NumericalVerdict& verdict) {
-    if (verdict.converged == run::Answer::unknown) {
-        return fact("Numerics",
-                    verdict.text + (result.zoom ? "" : "; talus run --convergence compares with finer numerics"));
-    }
-    return fact("Numerics", "", verdict.text, verdict.converged == run::Answer::yes);
-}
-
-Json quality(const scene::Scene& scene, const run::RunResult& result, const run::NumericalVerdict& verdict) {
+Json quality(const scene::Scene& scene, const run::RunResult& result) {
     const observe::Observation& o = result.observation;
     const char* state = result.status == run::RunStatus::complete      ? "complete"
                         : result.status == run::RunStatus::interrupted ? "partial: interrupted"
@@ -252,7 +254,7 @@ Json quality(const scene::Scene& scene, const run::RunResult& result, const run:
                         scene.spec.solver.iteration_count, scene.spec.solver.extra_iteration_count,
                         significant(100 * c.time_share_iterated, 2), fixed(c.mean_iterations, 1))
                   : fmt::format("{} per step", scene.spec.solver.iteration_count)),
-         numerics(result, verdict), balance});
+         balance});
     return all;
 }
 
@@ -320,16 +322,16 @@ Json results_head(std::string_view format, const scene::Scene& scene) {
 
 Json run_results(const scene::Scene& scene, const run::RunResult& result,
                  const std::vector<run::Comparison>& comparisons) {
-    const run::NumericalVerdict said = numerical_verdict(result, comparisons);
+    const run::RunVerdict verdict = judge(result, comparisons);
     Json all = results_head("talus results", scene);
-    all.update({{"status", status(result)},
-                {"verdict", verdict(said)},
+    all.update({{"status", status(result, verdict)},
+                {"verdict", verdict_json(verdict)},
                 {"depth_averaged", result.depth_averaged() ? Json{{"grid_cell_m", result.grid_cell}} : Json()},
                 {"compression", compression(scene, result)},
                 {"flow_thickness", flow_thickness(scene, result)},
                 {"key_figures", key_figures(scene, result)},
                 {"observations", observations(scene, result)},
-                {"quality", quality(scene, result, said)},
+                {"quality", quality(scene, result)},
                 {"buildings", buildings(scene, result)},
                 {"barriers", barriers(result)},
                 {"impact_filter_window_s", scene.spec.outputs.impact_filter_window},

@@ -165,13 +165,16 @@ Json cards(const BothModels& models, const run::SecondOpinion& opinion) {
 
 Json second_opinion_results(const BothModels& models, const run::SecondOpinion& opinion) {
     Json all = results_head("talus comparison", models.scene);
-    const Json of_particles = status(models.particles), of_grid = status(models.depth_averaged);
+    const run::RunVerdict particles = judge(models.particles), grid = judge(models.depth_averaged);
+    const Json of_particles = status(models.particles, particles), of_grid = status(models.depth_averaged, grid);
     const bool partial = of_particles["partial"].get<bool>() || of_grid["partial"].get<bool>();
     all.update({{"status",
                  {{"name", partial ? "a run did not come to its end" : "complete"},
                   {"partial", partial},
+                  {"beyond_limits", beyond_limits(run::judge_together({particles, grid}))},
                   {"particles", of_particles},
                   {"depth_averaged", of_grid}}},
+                {"verdict", {{"particles", verdict_json(particles)}, {"depth_averaged", verdict_json(grid)}}},
                 {"agreement",
                  {{"intersection_over_union", number_or_null<Json>(opinion.area.intersection_over_union())},
                   {"both_m2", opinion.area.both},

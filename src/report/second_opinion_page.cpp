@@ -115,7 +115,7 @@ Result<std::string> second_opinion_report(const BothModels& models, const run::S
     content.farthest_chainage =
         std::fmax(content.farthest_chainage, models.depth_averaged.observation.run_out.front_chainage);
     content.cell = opinion.depth.difference.geometry.cell;
-    content.not_converged = numerical_verdict(models.particles, {}).converged == run::Answer::no;
+    if (!results["status"]["beyond_limits"].is_null()) content.beyond_limits = results["status"]["beyond_limits"];
     content.buildings.title = "Structures hit in";
     for (std::size_t k = 0; k < hit_by_names.size(); ++k) content.buildings.class_names.at(k) = hit_by_names.at(k);
     content.buildings.classes.clear();
@@ -138,7 +138,8 @@ Result<std::string> second_opinion_report(const BothModels& models, const run::S
     page["report_name"] = "two models compared";
     page["masthead"] = "Landslide run-out, two models compared";
     page["maps"] = std::move(maps);
-    page["verdict"] = {{"not_converged", content.not_converged}};
+    page["verdicts"] = {named_verdict("Particles", results["verdict"]["particles"]),
+                        named_verdict("Depth-averaged", results["verdict"]["depth_averaged"])};
     return render(report_files::second_opinion_html, page);
 }
 

@@ -308,17 +308,4 @@ Comparison compare(ComparisonKind kind, const scene::Scene& scene, const RunResu
     return comparison;
 }
 
-NumericalVerdict numerical_verdict(const RunResult& result, const std::vector<Comparison>& comparisons) {
-    const observe::Compression& compression = result.observation.compression;
-    if (!compression.within_limits()) {
-        return {Answer::no, fmt::format("not converged: debris too compressed during {:.2g} % of the simulated time",
-                                        100 * compression.time_share_above)};
-    }
-    for (const Comparison& comparison : comparisons) {
-        if (comparison.kind != ComparisonKind::convergence) continue;
-        return {comparison.converged(), comparison.verdict_text()};
-    }
-    return {Answer::unknown, "convergence not tested"};
-}
-
 }  // namespace talus::run

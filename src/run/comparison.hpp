@@ -74,11 +74,4 @@ struct Comparison {
                                  std::vector<VariantRun> runs);
 inline constexpr double counting_force_share = 0.05;
 
-/// One verdict on the numerics of a run: on its compression, and on its convergence if that was tested.
-struct NumericalVerdict {
-    Answer converged = Answer::unknown;
-    std::string text;  ///< "not converged: debris too compressed during 12 % of the simulated time"
-};
-[[nodiscard]] NumericalVerdict numerical_verdict(const RunResult& result, const std::vector<Comparison>& comparisons);
-
 }  // namespace talus::run

@@ -203,17 +203,6 @@ TEST_F(Compare, BuildingsHitMustBeTheSameButForATouch) {
     EXPECT_EQ(compared().converged(), Answer::no);
 }
 
-TEST_F(Compare, ARunHasOneVerdict) {
-    EXPECT_EQ(numerical_verdict(base, {}).converged, Answer::unknown);
-    add("finer", observed(10, 12, 200));
-    EXPECT_EQ(numerical_verdict(base, {compared()}).converged, Answer::yes);
-    EXPECT_EQ(numerical_verdict(base, {compared(ComparisonKind::sensitivity)}).converged, Answer::unknown);
-    base.observation.compression.time_share_above = 0.2;
-    const NumericalVerdict squeezed = numerical_verdict(base, {compared()});
-    EXPECT_EQ(squeezed.converged, Answer::no) << "whatever the refinements say";
-    EXPECT_EQ(squeezed.text, "not converged: debris too compressed during 20 % of the simulated time");
-}
-
 TEST_F(Compare, TwoObservationsAtOnePlaceAreOneQuantity) {
     scene.spec.observations.push_back({"again", 100, 8, ""});
     add("finer", observed(10, 12, 200));
