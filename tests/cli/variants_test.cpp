@@ -97,6 +97,8 @@ TEST(Vary, RunsOncePerValueOneAtATime) {
     EXPECT_EQ(variants.at(0).at("name"), "material.friction_coefficient = 0.1");
     EXPECT_GT(variants.at(0).at("values").at("run_out").at("value_m"),
               variants.at(1).at("values").at("run_out").at("value_m"));
+    EXPECT_GT(variants.at(0).at("values").at("peak_speed").at("value_mps"),
+              variants.at(1).at("values").at("peak_speed").at("value_mps"));
     EXPECT_NEAR(variants.at(2).at("particles").get<double>() / last_event(outcome).at("particles").get<double>(), 2,
                 0.2);
     EXPECT_TRUE(fs::exists(scene.folder() / "result/variants.csv"));

@@ -1,7 +1,10 @@
 #include "report/second_opinion.hpp"
 
 #include <algorithm>
+#include <cmath>
+#include <cstdio>
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -112,6 +115,19 @@ TEST(SecondOpinionPage, HasSpeedAndPressureOfBothAndTheirDifferences) {
                 report::greatest(two.particles.observation.maps.peak_pressure) / 1e3, 1e-6);
 }
 
+TEST(SecondOpinionPage, WarningsOfEitherRunStandOnIt) {
+    TwoModels two;
+    EXPECT_EQ(two.page().find("verdict-box beyond"), std::string::npos);
+    two.grid.observation.energy.speed = 131;
+    two.grid.observation.energy.share = 4;
+    two.grid.observation.energy.cells = 10;
+    two.particles.observation.thickness.median = 0.5 * two.particles.particle_spacing;
+    const std::string page = two.page();
+    EXPECT_THAT(page, HasSubstr("faster than its fall explains"));
+    EXPECT_THAT(page, HasSubstr("particles thick in the median of its trail, fewer than 2"));
+    EXPECT_EQ(page.find("status complete"), std::string::npos) << "not in green";
+}
+
 TEST(SecondOpinionPage, TheScaleOfADifferenceFollowsTheData) {
     const auto limits = [](float factor) {
         TwoModels two;
@@ -142,5 +158,24 @@ TEST(DifferenceClasses, AreAsWideBelowAsAboveAndGreyAroundNone) {
     }
 }
 
+// TEMP
+TEST(TempDump, page) {
+    TwoModels two;
+    two.scene.notes.push_back("x");
+    observe::HazardMaps& maps = two.grid.observation.maps;
+    for (int r = 0; r < maps.peak_depth.geometry.rows; ++r)
+        for (int c = 0; c < maps.peak_depth.geometry.columns; ++c) {
+            const float f = 1.0F + 0.9F * std::sin(c / 20.0F) * std::cos(r / 17.0F);
+            maps.peak_depth.at(c, r) *= f * 3;
+            maps.peak_speed.at(c, r) *= f;
+            maps.peak_pressure.at(c, r) *= f * f;
+        }
+    two.grid.observation.buildings[2].hit = false;
+    two.grid.observation.buildings[0].peak_impact_pressure *= 1.8;
+    FILE* f = fopen("/tmp/cmp/fixture.html", "w");
+    const std::string page = two.page();
+    fwrite(page.data(), 1, page.size(), f);
+    fclose(f);
+}
 }  // namespace
 }  // namespace talus::test

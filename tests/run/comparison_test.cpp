@@ -71,13 +71,13 @@ TEST_F(Compare, ChangesArePercentOfTheBase) {
 
 TEST_F(Compare, VariedInputsAreComparedByTheirPeaksToo) {
     const auto maps = [](float depth, float speed, float pressure) {
-        observe::HazardMaps maps;
+        observe::HazardMaps all;
         for (auto [map, value] :
-             {std::pair{&maps.peak_depth, depth}, {&maps.peak_speed, speed}, {&maps.peak_pressure, pressure}}) {
+             {std::pair{&all.peak_depth, depth}, {&all.peak_speed, speed}, {&all.peak_pressure, pressure}}) {
             *map = Grid<float>({0, 0, 1, 2, 1}, value / 2);
             map->values[1] = value;
         }
-        return maps;
+        return all;
     };
     base.observation.maps = maps(2, 10, 200e3F);
     add("wet", observed(10, 12, 200));
