@@ -155,6 +155,7 @@ Json cards(const BothModels& models, const run::SecondOpinion& opinion) {
                fmt::format("at chainage {} m", fixed(opinion.arrival.chainage, 0)));
     std::array<int, 4> hits{};
     for_each_structure(models, [&](const auto&, const auto&, HitBy by) { ++hits.at(by); });
+    if (models.scene.buildings.empty()) return all;
     const int one = hits[particles_only] + hits[depth_averaged_only];
     all.push_back(key_figure("structures_hit_in_one_model", "Structures hit in one model only", one, "f0", "",
                              fmt::format("{} in both, {} in neither", hits[both], hits[neither]), one > 0));

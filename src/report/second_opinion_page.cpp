@@ -92,10 +92,9 @@ void add_layers(const BothModels& models, const Measure& measure, MapContent& co
          {std::tuple{&models.particles, "particles", "with particles"},
           std::tuple{&models.depth_averaged, "depth-averaged", "in the depth-averaged model"}}) {
         style.file = fmt::format("{}_{}", measure.file, result->depth_averaged() ? "depth_averaged" : "particles");
-        content.layers.push_back({style, &(result->observation.maps.*style.grid),
-                                  fmt::format("{}, {}", measure.name, model),
-                                  fmt::format("Greatest {} at each place, {}.", measure.what, words), measure.digits,
-                                  "", measure.name});
+        content.layers.push_back(
+            {style, &(result->observation.maps.*style.grid), fmt::format("{}, {}", measure.name, model),
+             fmt::format("Greatest {} at each place, {}.", measure.what, words), measure.digits, "", measure.name});
     }
     const HazardMap difference = difference_style(*known, measure);
     content.layers.push_back(

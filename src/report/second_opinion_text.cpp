@@ -64,10 +64,11 @@ Sentence speed(const BothModels& models, const run::SecondOpinion& opinion) {
     const double p = v.peak_particles.value, d = v.peak_depth_averaged.value;
     if (!(p > 0) && !(d > 0)) return {};
     const double pressure_p = q.peak_particles.value / 1e3, pressure_d = q.peak_depth_averaged.value / 1e3;
-    return {size_of(p, d), fmt::format("Peak speed: {}. Peak dynamic pressure: {} and {}{}.{}",
-                                       pair_text(p, d, "f1", "m/s", places(models.scene, v)),
-                                       with_unit(pressure_p, "s3", "kPa"), with_unit(pressure_d, "s3", "kPa"),
-                                       change_text(pressure_p, pressure_d), medians_text("peak speed", v, "m/s"))};
+    return {std::max(size_of(p, d), size_of(pressure_p, pressure_d)),
+            fmt::format("Peak speed: {}. Peak dynamic pressure: {} and {}{}.{}",
+                        pair_text(p, d, "f1", "m/s", places(models.scene, v)), with_unit(pressure_p, "s3", "kPa"),
+                        with_unit(pressure_d, "s3", "kPa"), change_text(pressure_p, pressure_d),
+                        medians_text("peak speed", v, "m/s"))};
 }
 
 Sentence depth(const BothModels& models, const run::SecondOpinion& opinion) {
