@@ -66,9 +66,13 @@ HazardMap difference_style(const HazardMap& of, const Measure& measure) {
 std::string largest_text(const BothModels& models, const Measure& measure, const HazardMap& style) {
     const run::LargestDifference& largest = measure.maps->largest;
     if (!largest.known() || largest.size() == 0) return "";
-    return fmt::format(" Largest {}: {}\u00a0{} with particles, {}\u00a0{} depth-averaged.",
-                       place(models.scene, largest.at), fixed(style.factor * largest.particles, measure.digits),
-                       style.unit, fixed(style.factor * largest.depth_averaged, measure.digits), style.unit);
+    const auto shown = [&](const Grid<float>& map, double value) {
+        if (std::isnan(value_at(map, largest.at))) return std::string("no debris");
+        return fmt::format("{}\u00a0{}", fixed(style.factor * value, measure.digits), style.unit);
+    };
+    return fmt::format(" Largest {}: {} with particles, {} depth-averaged.", place(models.scene, largest.at),
+                       shown(measure.maps->particles, largest.particles),
+                       shown(measure.maps->depth_averaged, largest.depth_averaged));
 }
 
 Grid<float> classes_of_area(const run::SecondOpinion& opinion, double least) {
