@@ -29,7 +29,7 @@ int terminal_columns() {
 }
 
 std::string front_text(const run::Progress& p) {
-    return std::isnan(p.front_chainage) ? "front -" : fmt::format("front {:.0f} m", p.front_chainage);
+    return std::isnan(p.front_chainage) ? "no front yet" : fmt::format("front to chainage {:.0f} m", p.front_chainage);
 }
 
 std::string bar_text(const run::Progress& p, const std::optional<run::SeriesProgress>& series) {

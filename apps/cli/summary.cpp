@@ -147,6 +147,12 @@ std::string summary_text(const scene::Scene& scene, const run::RunResult& result
                                             r.runout_angle * degrees_per_radian,
                                             r.at_least ? fmt::format("; debris left the {}", result.domain()) : ""));
     }
+    if (const double chainage = seen.run_out.front_chainage; std::isfinite(chainage)) {
+        text += line("front", fmt::format("to chainage {:.0f} m{}", chainage,
+                                          seen.followed_path ? " of the path that debris followed; until now chainages "
+                                                               "were along the traced one"
+                                                             : ""));
+    }
     text += line("volume", fmt::format("{:.1f} m3 released: {:.1f} deposited, {:.1f} moving, {:.1f} left the {}",
                                        seen.volume_released, end.volume_deposited, end.volume_moving + end.volume_held,
                                        end.volume_left, result.domain()));

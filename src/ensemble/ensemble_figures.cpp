@@ -128,7 +128,7 @@ report::Json run_out_chart(const EnsembleResult& result) {
     counts.high *= 1.22;
 
     report::Plot left(66, 20, 420, 250, x, counts);
-    left.axes("run-out (chainage of the front), m", "runs");
+    left.axes("run-out along the flow, m", "runs");
     report::Curve inside{report::Curve::Shape::bars, "bar", "", {}, {}, {}, h.width}, outside = inside;
     outside.style = "bar outside";
     for (std::size_t i = 0; i < h.counts.size(); ++i) {
@@ -148,7 +148,7 @@ report::Json run_out_chart(const EnsembleResult& result) {
     label(high, "start", 5, 14, "95 %:");
 
     report::Plot right(570, 20, 412, 250, x, {0, 100});
-    right.axes("run-out (chainage of the front), m", "runs that go farther, %");
+    right.axes("run-out along the flow, m", "runs that run out farther, %");
     std::vector<double> at = {x.low}, share = {100};
     const auto n = static_cast<double>(values.size());
     for (std::size_t i = 0; i < values.size(); ++i) {  // a stair: percentile() has ordered the values
@@ -160,7 +160,7 @@ report::Json run_out_chart(const EnsembleResult& result) {
     at.push_back(x.high);
     share.push_back(0);
     right.line(at, share, "series blue");
-    return report::chart_json({"Run-out of all runs", 1000, 320, {std::move(left), std::move(right)}});
+    return report::chart_json({"Run-out along the flow of all runs", 1000, 320, {std::move(left), std::move(right)}});
 }
 
 report::Json sensitivity_data(const EnsembleResult& result) {
@@ -232,7 +232,7 @@ report::Json scatter_chart(const EnsembleResult& result) {
     y = {y.low - margin, y.high + margin};
     const std::size_t columns = std::min<std::size_t>(3, shown.size());
     const double width = 1000.0 / static_cast<double>(columns);
-    report::Chart chart{"Run-out against every factor", 1000, 0, {}};
+    report::Chart chart{"Run-out along the flow against every factor", 1000, 0, {}};
     for (std::size_t i = 0; i < shown.size(); ++i) {
         std::vector<double> xs, ys;
         for (const RunRecord& run : result.reduction.runs) {
@@ -246,7 +246,7 @@ report::Json scatter_chart(const EnsembleResult& result) {
         const std::size_t row = i / columns;
         report::Plot plot(width * static_cast<double>(i % columns) + 66, 300.0 * static_cast<double>(row) + 12,
                           width - 84, 226, x, y);
-        plot.axes(factors[shown[i]].key, i % columns == 0 ? "run-out, m" : "");
+        plot.axes(factors[shown[i]].key, i % columns == 0 ? "run-out along the flow, m" : "");
         plot.dots(xs, ys, xs.size() > 400 ? 2.2 : 4, "run-dot");
         chart.plots.push_back(std::move(plot));
         chart.height = 300 * static_cast<double>(row + 1);

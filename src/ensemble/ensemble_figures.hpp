@@ -6,7 +6,7 @@
 /// The figures of an ensemble's report, as data; null where there is nothing to draw.
 namespace talus::ensemble {
 
-/// Histogram of run-out with its percentiles, and the share of runs with a longer run-out.
+/// Histogram of run-out along the flow with its percentiles, and the share of runs with a longer one.
 [[nodiscard]] report::Json run_out_chart(const EnsembleResult& result);
 
 /// For every result, its sensitivity to each factor, by the measure that belongs to the design.
@@ -14,7 +14,7 @@ namespace talus::ensemble {
 /// Sensitivity as bars: a drawing for the report.
 [[nodiscard]] std::string sensitivity_svg(const report::Json& sensitivity);
 
-/// Run-out against each numeric factor, a dot per run.
+/// Run-out along the flow against each numeric factor, a dot per run.
 [[nodiscard]] report::Json scatter_chart(const EnsembleResult& result);
 
 }  // namespace talus::ensemble

@@ -60,8 +60,9 @@ Json key_figures_of(const EnsembleResult& result) {
     Json all = Json::array();
     all.push_back(key_figure("complete_runs", "Complete runs", r.complete, "",
                              fmt::format("of {}", result.runs->count()), below));
-    all.push_back(key_figure("median_run_out_m", "Run-out, median", number_or_null<Json>(median), "f0", "m",
-                             std::isnan(median) ? "no run reached the flow path"
+    all.push_back(key_figure("median_run_out_m", "Run-out along the flow, median", number_or_null<Json>(median), "f0",
+                             "m",
+                             std::isnan(median) ? "no debris ran out in any run"
                                                 : fmt::format("5 to 95 %: {} to {} m", fixed(percentile(run_out, 5), 0),
                                                               fixed(percentile(run_out, 95), 0))));
     const double depth = result.runs->plan().thresholds.depth.front();
@@ -261,7 +262,7 @@ MapContent content_of(const EnsembleResult& result) {
 
     content.cell = content.reached->geometry.cell;
     std::vector<double> run_out = result.values_of(0);
-    content.farthest_chainage = percentile(run_out, 100);
+    content.farthest_chainage = percentile(run_out, 100);  // about, and only for the frame of the map
     content.buildings.title = "Buildings, share of runs";
     content.buildings.class_names = {"never hit", "hit in up to 10 %", "hit in 10 – 50 %", "hit in over 50 %"};
     for (const BuildingOdds& b : result.reduction.buildings) {

@@ -29,7 +29,7 @@ double predict_arrival_time(const observe::Observation& run, double chainage) {
     return front_at(run, chainage).arrival_time;
 }
 
-double predict_run_out(const observe::Observation& run) {
+double predict_front_chainage(const observe::Observation& run) {
     return run.run_out.front_chainage;
 }
 
@@ -153,7 +153,7 @@ std::vector<ObservedValue> observed_values(const scene::Scene& scene) {
     }
     for (std::size_t i = 0; i < spec.observed_run_outs.size(); ++i) {
         const params::ObservedRunOutSpec& o = spec.observed_run_outs[i];
-        add("observed_run_out", i, "chainage_m", label(o.name, "Run-out"), "m", o.chainage, o.uncertainty);
+        add("observed_run_out", i, "chainage_m", label(o.name, "Front to chainage"), "m", o.chainage, o.uncertainty);
     }
     for (std::size_t i = 0; i < spec.deposit_outlines.size(); ++i) {
         const params::OutlineSpec& o = spec.deposit_outlines[i];
@@ -182,7 +182,7 @@ std::vector<double> predicted_values(const scene::Scene& scene, const observe::O
     for (const auto& o : spec.run_ups) all.push_back(predict_run_up(run, scene.terrain, {o.x, o.y}));
     for (const auto& o : spec.deposit_depths) all.push_back(predict_deposit_depth(run, {o.x, o.y}));
     for (const auto& o : spec.damages) all.push_back(predict_building_pressure(run, o.building));
-    for (std::size_t i = 0; i < spec.observed_run_outs.size(); ++i) all.push_back(predict_run_out(run));
+    for (std::size_t i = 0; i < spec.observed_run_outs.size(); ++i) all.push_back(predict_front_chainage(run));
     for (std::size_t i = 0; i < spec.deposit_outlines.size(); ++i) {
         all.push_back(
             predict_outline_overlap(run.maps.deposit_depth, scene.deposit_outlines[i], spec.deposit_outlines[i].depth));

@@ -21,7 +21,7 @@ namespace talus::ensemble {
 [[nodiscard]] double predict_arrival_time(const observe::Observation& run, double chainage);
 
 /// m, farthest chainage of the front.
-[[nodiscard]] double predict_run_out(const observe::Observation& run);
+[[nodiscard]] double predict_front_chainage(const observe::Observation& run);
 
 inline constexpr double run_up_radius = 15;  ///< m, in which debris near a run-up mark counts
 
@@ -60,8 +60,8 @@ struct ObservedValue {
     double value = 0, uncertainty = 0;  ///< of damage: the limit of pressure
     /// Damage says only on which side of the value the prediction should lie.
     enum class Kind { equal, at_least, below } kind = Kind::equal;
-    /// Substitute for the prediction of a run whose debris did not reach the place: front velocity and run-out 0,
-    /// arrival at the latest end of the run, run-up below the mark by the search radius.
+    /// Substitute for the prediction of a run whose debris did not reach the place: front velocity and front chainage
+    /// 0, arrival at the latest end of the run, run-up below the mark by the search radius.
     double unreached = 0;
 };
 

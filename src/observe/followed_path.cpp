@@ -82,17 +82,15 @@ std::vector<PlanPoint> find_course(const HazardMaps& maps, const RunOut& run_out
     return course;
 }
 
-/// When debris first was at a chainage, or beyond it, and its speed.
+/// Of the map cells around a place: the first arrival and the speed then. NaN: none.
 struct Arrival {
-    double chainage, time, speed;
+    double time = never, speed = never;
 };
 
-/// Of the map cells around a place on the path: the first arrival.
-Arrival first_arrival(const HazardMaps& maps, const terrain::FlowPath& path, double chainage) {
+Arrival first_arrival(const HazardMaps& maps, const PlanPoint& p) {
     const GridGeometry& g = maps.arrival_time.geometry;
-    const PlanPoint p = path.point_at(chainage);
     const double u = (p.x - g.x_min) / g.cell, v = (p.y - g.y_min) / g.cell;
-    Arrival first{chainage, never, never};
+    Arrival first;
     for (int row = std::max(0, static_cast<int>(v - reach_cells)); row < std::min<double>(g.rows, v + reach_cells);
          ++row) {
         for (int column = std::max(0, static_cast<int>(u - reach_cells));
@@ -101,87 +99,71 @@ Arrival first_arrival(const HazardMaps& maps, const terrain::FlowPath& path, dou
             const std::size_t k = g.index(column, row);
             const double time = maps.arrival_time.values[k];
             if (!(time < first.time || (std::isnan(first.time) && !std::isnan(time)))) continue;
-            first = {chainage, time, static_cast<double>(maps.arrival_speed.values[k])};
+            first = {time, static_cast<double>(maps.arrival_speed.values[k])};
         }
     }
     return first;
 }
 
-/// Every `interval` from the first chainage that the releases did not cover to the last with an arrival.
-std::vector<Arrival> find_arrivals(const HazardMaps& maps, const terrain::FlowPath& path, double interval) {
-    std::vector<Arrival> arrivals;
-    for (std::size_t k = 0; static_cast<double>(k) * interval <= path.length(); ++k) {
-        arrivals.push_back(first_arrival(maps, path, static_cast<double>(k) * interval));
+/// The front along the path, to the last place with an arrival; 0 where the releases lay.
+FrontRecord record_front(const HazardMaps& maps, const terrain::FlowPath& path, const params::OutputSpec& outputs) {
+    FrontRecord front;
+    front.interval = outputs.chainage_interval;
+    front.resolution = resolved_cells * maps.arrival_time.geometry.cell;
+    front.window = std::max(outputs.front_velocity_window, front.resolution);
+    for (std::size_t k = 0; static_cast<double>(k) * front.interval <= path.length(); ++k) {
+        const Arrival arrival = first_arrival(maps, path.point_at(static_cast<double>(k) * front.interval));
+        front.arrival.push_back(arrival.time);
+        front.head.push_back({arrival.speed, arrival.speed});
     }
-    while (!arrivals.empty() && std::isnan(arrivals.back().time)) arrivals.pop_back();
-    const auto covered = std::find_if(arrivals.rbegin(), arrivals.rend(), [](const Arrival& a) { return a.time <= 0; });
-    arrivals.erase(arrivals.begin(), covered.base());
+    while (!front.arrival.empty() && std::isnan(front.arrival.back())) front.arrival.pop_back();
+    front.head.resize(front.arrival.size());
     // The front is at a place when debris is there or beyond.
-    for (std::size_t k = arrivals.size(); k-- > 1;) {
-        const Arrival& beyond = arrivals[k];
-        Arrival& here = arrivals[k - 1];
-        if (!(here.time <= beyond.time)) here = {here.chainage, beyond.time, beyond.speed};
-    }
-    return arrivals;
-}
-
-/// The front along the path, with velocities fitted over `window` m. None where the front outruns the debris: it came
-/// from elsewhere, or through the air.
-std::vector<FrontSample> front_of(const std::vector<Arrival>& arrivals, double interval, double window) {
-    const auto half = static_cast<std::size_t>(std::max(1.0, std::floor(window / 2 / interval)));
-    std::vector<double> times(arrivals.size());
-    std::transform(arrivals.begin(), arrivals.end(), times.begin(), [](const Arrival& a) { return a.time; });
-    std::vector<FrontSample> front;
-    front.reserve(arrivals.size());
-    for (std::size_t i = 0; i < arrivals.size(); ++i) {
-        const std::size_t first = i > half ? i - half : 0, last = std::min(i + half, arrivals.size() - 1);
-        double fastest = 0;
-        for (std::size_t k = first; k <= last; ++k) fastest = std::max(fastest, arrivals[k].speed);
-        const double velocity = fitted_velocity(times, first, last, interval);
-        front.push_back({arrivals[i].chainage, arrivals[i].time, velocity <= fastest_front * fastest ? velocity : never,
-                         arrivals[i].speed});
+    for (std::size_t k = front.arrival.size(); k-- > 1;) {
+        if (front.arrival[k - 1] <= front.arrival[k]) continue;
+        front.arrival[k - 1] = front.arrival[k];
+        front.head[k - 1] = front.head[k];
     }
     return front;
 }
 
-/// Chainages of the front along another path.
-void move_chainages(const terrain::FlowPath& from, const terrain::FlowPath& to, std::vector<TimeSample>& timeseries) {
-    for (TimeSample& sample : timeseries) {
-        if (std::isnan(sample.front_chainage)) continue;
-        const auto at = to.locate(from.point_at(sample.front_chainage));
-        sample.front_chainage = at ? at->chainage : never;
+/// The chainage of the front in every row.
+void tell_front(const FrontRecord& front, std::vector<TimeSample>& timeseries) {
+    for (TimeSample& row : timeseries) {
+        const auto next = std::upper_bound(front.arrival.begin(), front.arrival.end(), row.time);
+        row.front_chainage = next == front.arrival.begin()
+                                 ? never
+                                 : front.interval * static_cast<double>(next - front.arrival.begin() - 1);
     }
 }
 
 /// Takes a path, with the front along it by the maps.
-void take_path(const terrain::FlowPath& path, const terrain::FlowPath& so_far, const params::OutputSpec& outputs,
-               Observation& observation) {
-    const HazardMaps& maps = observation.maps;
-    const double interval = outputs.chainage_interval;
-    const std::vector<Arrival> arrivals = find_arrivals(maps, path, interval);
-    observation.front =
-        front_of(arrivals, interval, std::max(outputs.front_velocity_window, 4 * maps.peak_depth.geometry.cell));
-    observation.run_out.front_chainage = arrivals.empty() ? never : arrivals.back().chainage;
-    move_chainages(so_far, path, observation.timeseries);
+void take_path(const terrain::FlowPath& path, const params::OutputSpec& outputs, Observation& observation) {
+    FrontRecord front = record_front(observation.maps, path, outputs);
+    tell_front(front, observation.timeseries);
+    observation.run_out.front_chainage =
+        front.arrival.empty() ? never : front.interval * static_cast<double>(front.arrival.size() - 1);
+    // What the releases cover is no arrival.
+    for (double& time : front.arrival) time = time > 0 ? time : never;
+    observation.front = front.samples();
     observation.followed_path = path;
 }
 
 }  // namespace
 
-void follow_debris(const sim::Ground& ground, const terrain::FlowPath& traced, double corridor_width,
-                   const params::OutputSpec& outputs, Observation& observation) {
+void follow_debris(const sim::Ground& ground, double corridor_width, const params::OutputSpec& outputs,
+                   Observation& observation) {
     const HazardMaps& maps = observation.maps;
     const RunOut& run_out = observation.run_out;
     const double cell = maps.peak_depth.geometry.cell;
     if (!(run_out.along_flow > shortest_cells * cell)) return;
     const terrain::FlowPath path(find_course(maps, run_out), corridor_width);
-    take_path(path, traced, outputs, observation);
+    take_path(path, outputs, observation);
     observation.erosion = measure_erosion(ground, path, outputs.chainage_interval);
 }
 
-void measure_along(const terrain::FlowPath& path, const terrain::FlowPath& so_far, const params::OutputSpec& outputs,
-                   Observation& observation) {
-    take_path(path, so_far, outputs, observation);
+void measure_along(const terrain::FlowPath& path, const params::OutputSpec& outputs, Observation& observation) {
+    take_path(path, outputs, observation);
     if (observation.erosion.chainage.empty()) return;  // no bed
     set_upstream_volumes(path, outputs.chainage_interval, observation.erosion);
 }

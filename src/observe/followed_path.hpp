@@ -18,15 +18,12 @@ namespace talus::observe {
 /// jump.
 ///
 /// Sets followed_path, front, erosion and all front chainages of `observation`, whose maps and run-out are known.
-/// `corridor_width` in m. `traced`: the path that the front chainages refer to so far; may be empty. Nothing changes
-/// where debris hardly left its release.
-void follow_debris(const sim::Ground& ground, const terrain::FlowPath& traced, double corridor_width,
-                   const params::OutputSpec& outputs, Observation& observation);
+/// `corridor_width` in m. Nothing changes where debris hardly left its release.
+void follow_debris(const sim::Ground& ground, double corridor_width, const params::OutputSpec& outputs,
+                   Observation& observation);
 
 /// Moves a run's front, erosion and all front chainages to the path that the debris of another run of the scene
-/// followed. `so_far`: the path that they refer to; may be empty. Where its debris did not come to that path, it has no
-/// front there.
-void measure_along(const terrain::FlowPath& path, const terrain::FlowPath& so_far, const params::OutputSpec& outputs,
-                   Observation& observation);
+/// followed. Where its debris did not come to that path, it has no front there.
+void measure_along(const terrain::FlowPath& path, const params::OutputSpec& outputs, Observation& observation);
 
 }  // namespace talus::observe

@@ -118,9 +118,30 @@ void FrontTracker::after_step(const sim::Ground& ground, const Debris& debris) {
     farthest_ = current_;
 }
 
+double FrontRecord::fastest(std::size_t first, std::size_t last) const {
+    double fastest = 0;
+    for (std::size_t row = first; row <= last; ++row) fastest = std::fmax(fastest, head[row].fastest);
+    return fastest;
+}
+
 bool FrontRecord::jumped_to(std::size_t bin) const {
-    const double fastest = std::max(head[bin].fastest, head[bin - 1].fastest);
-    return interval > fastest_front * fastest * (arrival[bin] - arrival[bin - 1]);  // false without both arrivals
+    const auto arrived = [&](std::size_t row) { return row < arrival.size() && !std::isnan(arrival[row]); };
+    if (!arrived(bin - 1) || !arrived(bin)) return false;
+    std::size_t first = bin - 1, last = bin;
+    const auto too_short = [&] { return static_cast<double>(last - first) * interval < resolution; };
+    for (bool longer = true; longer && too_short();) {
+        longer = false;
+        if (first > 0 && arrived(first - 1)) {
+            --first;
+            longer = true;
+        }
+        if (too_short() && arrived(last + 1)) {
+            ++last;
+            longer = true;
+        }
+    }
+    return static_cast<double>(last - first) * interval >
+           fastest_front * fastest(first, last) * (arrival[last] - arrival[first]);
 }
 
 double FrontRecord::velocity_at(std::size_t middle) const {

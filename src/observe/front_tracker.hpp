@@ -22,6 +22,9 @@ namespace talus::observe {
 /// grows faster than the distance travelled, by half at a third of the bend radius from the path.
 inline constexpr double fastest_front = 1.5;
 
+/// When map cells are reached says little about the velocity of a front over less than so many of them.
+inline constexpr double resolved_cells = 4;
+
 /// Slope of chainage against arrival time (s; NaN: none) by least squares over the rows [first, last], m/s. The rows
 /// are `interval` m of chainage apart. NaN where all arrived at the same time.
 [[nodiscard]] double fitted_velocity(std::span<const double> arrival, std::size_t first, std::size_t last,
@@ -37,14 +40,16 @@ struct FrontRecord {
         double mean = never, fastest = never;
     };
     double interval = 1, window = 10;  ///< m of chainage; the window is that of front velocities
+    double resolution = 0;             ///< m, length below which arrivals say little about velocity: that of map cells
     std::vector<double> arrival{};     ///< s, by chainage / interval; NaN: not yet
     std::vector<Head> head{};
 
     [[nodiscard]] std::vector<FrontSample> samples() const;
 
   private:
+    [[nodiscard]] double fastest(std::size_t first, std::size_t last) const;
     /// Whether the front went from the previous chainage to this one faster than the debris there moves: at a corner of
-    /// the path, or because other debris entered its corridor.
+    /// the path, or because other debris entered its corridor. Both are looked at over the resolution.
     [[nodiscard]] bool jumped_to(std::size_t bin) const;
     [[nodiscard]] double velocity_at(std::size_t middle) const;
 };

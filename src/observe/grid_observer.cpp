@@ -16,6 +16,9 @@ namespace {
 constexpr double thinnest_share = 0.1;
 /// So many parcels of equal volume stand for the debris where its run-out is measured as that of particles.
 constexpr double parcels = 20000;
+/// Debris this near to a cell is at the front when it arrives there, in cells. The cell's own speed says little: its
+/// debris is still thin, and resistance slows a thin layer most.
+constexpr int head_cells = 2;
 
 float speed_of(float u, float v, float slope_x, float slope_y) {
     const float w = u * slope_x + v * slope_y;
@@ -60,6 +63,7 @@ GridObserver::GridObserver(const depth::Solver& solver, terrain::FlowPath flow_p
       peak_speed_(solver.geometry()),
       arrival_time_(solver.geometry(), std::numeric_limits<float>::quiet_NaN()),
       arrival_speed_(arrival_time_),
+      arrival_fastest_(solver.geometry().size(), 0),
       released_(solver.geometry()),
       chainage_(solver.geometry().size(), std::numeric_limits<float>::quiet_NaN()),
       energy_(solver.material().gravity) {
@@ -157,7 +161,9 @@ void GridObserver::measure_cells(const depth::Solver& solver) {
         peak_speed_.values[cell] = std::max(peak_speed_.values[cell], speed);
         if (depth > arrives && std::isnan(arrival_time_.values[cell])) {
             arrival_time_.values[cell] = time;
-            arrival_speed_.values[cell] = speed;
+            const FrontRecord::Head head = head_at(solver, cell);
+            arrival_speed_.values[cell] = static_cast<float>(head.mean);
+            arrival_fastest_[cell] = static_cast<float>(head.fastest);
         }
     };
     if (solver.steps() == 0 || !solver.active()) {
@@ -175,6 +181,26 @@ void GridObserver::measure_cells(const depth::Solver& solver) {
                     speed_of(row.u[k], row.v[k], row.slope_x[k], row.slope_y[k]));
         }
     });
+}
+
+FrontRecord::Head GridObserver::head_at(const depth::Solver& solver, std::size_t cell) const {
+    const GridGeometry& g = solver.geometry();
+    if (solver.steps() == 0) return {0, 0};
+    const auto columns = static_cast<std::size_t>(g.columns);
+    const auto column = static_cast<int>(cell % columns), row = static_cast<int>(cell / columns);
+    double depths = 0, sum = 0, fastest = 0;
+    for (int r = std::max(0, row - head_cells); r <= std::min(g.rows - 1, row + head_cells); ++r) {
+        for (int c = std::max(0, column - head_cells); c <= std::min(g.columns - 1, column + head_cells); ++c) {
+            const double depth = solver.depth_at(c, r);
+            if (!(depth > thinnest_depth())) continue;
+            const double speed =
+                speed_of(solver.u_at(c, r), solver.v_at(c, r), solver.slope_x_at(c, r), solver.slope_y_at(c, r));
+            depths += depth;
+            sum += depth * speed;
+            fastest = std::max(fastest, speed);
+        }
+    }
+    return {depths > 0 ? sum / depths : 0, fastest};
 }
 
 void GridObserver::measure_structures(const depth::Solver& solver) {
@@ -281,10 +307,12 @@ TimeSample GridObserver::sample(const depth::Solver& solver, double held, double
     TimeSample s;
     const GridGeometry& g = solver.geometry();
     const double area = g.cell * g.cell;
+    double front = never;
     for (int row = 0; row < g.rows; ++row) {
         for (int column = 0; column < g.columns; ++column) {
             const double depth = solver.depth_at(column, row);
             if (!(depth > 0)) continue;
+            if (depth > outputs_.arrival_depth) front = std::fmax(front, chainage_[g.index(column, row)]);
             const double speed = speed_of(solver.u_at(column, row), solver.v_at(column, row),
                                           solver.slope_x_at(column, row), solver.slope_y_at(column, row));
             const double volume = depth * area;
@@ -300,7 +328,7 @@ TimeSample GridObserver::sample(const depth::Solver& solver, double held, double
     s.volume_left = solver.volume_left();
     s.volume_released = volume_released_ + held;
     s.volume_entrained = volume_entrained_;
-    s.front_chainage = front_;
+    s.front_chainage = front;
     s.time_step = solver.time_step();
     s.steps_per_second = steps_per_second;
     return s;
@@ -308,8 +336,10 @@ TimeSample GridObserver::sample(const depth::Solver& solver, double held, double
 
 FrontRecord GridObserver::front_record() const {
     FrontRecord record;
+    const double cell_size = released_.geometry.cell;
     record.interval = outputs_.chainage_interval;
-    record.window = outputs_.front_velocity_window;
+    record.resolution = resolved_cells * cell_size;
+    record.window = std::max(outputs_.front_velocity_window, record.resolution);
     if (flow_path_.empty()) return record;
     record.arrival.assign(static_cast<std::size_t>(flow_path_.length() / record.interval) + 1, never);
     record.head.assign(record.arrival.size(), {});
@@ -317,29 +347,30 @@ FrontRecord GridObserver::front_record() const {
     for (std::size_t cell = 0; cell < chainage_.size(); ++cell) {
         if (released_.values[cell] > 0 && chainage_[cell] > covered) covered = chainage_[cell];
     }
-    // How far the front had come at the time of each advance.
+    // Where the front came to, cell by cell.
     struct Advance {
-        float time, chainage, speed;
+        float time, chainage;
+        FrontRecord::Head head;
     };
     std::vector<Advance> advances;
     for (std::size_t cell = 0; cell < chainage_.size(); ++cell) {
         if (!(chainage_[cell] > covered) || std::isnan(arrival_time_.values[cell])) continue;
-        advances.push_back({arrival_time_.values[cell], chainage_[cell], arrival_speed_.values[cell]});
+        advances.push_back(
+            {arrival_time_.values[cell], chainage_[cell], {arrival_speed_.values[cell], arrival_fastest_[cell]}});
     }
     std::sort(advances.begin(), advances.end(), [](const Advance& a, const Advance& b) {
         return std::pair(a.time, -a.chainage) < std::pair(b.time, -b.chainage);
     });
     const Advance* before = nullptr;
     for (const Advance& now : advances) {
-        // Cells one after another are reached at uneven times; over two of them the front moves steadily.
-        if (before != nullptr && now.chainage < before->chainage + 2 * released_.geometry.cell) continue;
+        if (before != nullptr && now.chainage <= before->chainage) continue;
         for (auto bin = before == nullptr ? record.arrival.size()
                                           : static_cast<std::size_t>(before->chainage / record.interval) + 1;
              bin < record.arrival.size() && static_cast<double>(bin) * record.interval <= now.chainage; ++bin) {
             const double share = (static_cast<double>(bin) * record.interval - before->chainage) /
                                  (static_cast<double>(now.chainage) - before->chainage);
             record.arrival[bin] = before->time + share * (static_cast<double>(now.time) - before->time);
-            record.head[bin] = {now.speed, std::max(now.speed, before->speed)};
+            record.head[bin] = {now.head.mean, std::max(now.head.fastest, before->head.fastest)};
         }
         before = &now;
     }

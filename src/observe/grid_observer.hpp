@@ -65,6 +65,8 @@ class GridObserver {
     };
 
     void measure_cells(const depth::Solver& solver);
+    /// The debris around a cell that it just arrived in.
+    [[nodiscard]] FrontRecord::Head head_at(const depth::Solver& solver, std::size_t cell) const;
     void measure_structures(const depth::Solver& solver);
     void read_gauges(const depth::Solver& solver, bool row);
     void add_row(const depth::Solver& solver, double held, double steps_per_second);
@@ -76,9 +78,11 @@ class GridObserver {
     params::OutputSpec outputs_;
     terrain::FlowPath flow_path_;
     double density_, gravity_;
-    Grid<float> peak_depth_, peak_speed_, arrival_time_, arrival_speed_;  ///< 0 and NaN: not reached
-    Grid<float> released_;                                                ///< m, by cell
-    std::vector<float> chainage_;                                         ///< by cell; NaN: not on the path
+    Grid<float> peak_depth_, peak_speed_, arrival_time_;  ///< 0 and NaN: not reached
+    Grid<float> arrival_speed_;                           ///< m/s, mean of the debris around a cell on arrival
+    std::vector<float> arrival_fastest_;                  ///< m/s, and its largest
+    Grid<float> released_;                                ///< m, by cell
+    std::vector<float> chainage_;                         ///< by cell; NaN: not on the path
     std::vector<Structure> structures_;
     GaugeRecorder gauges_;
     EnergyAccount energy_;

@@ -92,7 +92,9 @@ RunOut measure_run_out(const sim::Ground& ground, const sim::State& state, const
             if (std::isnan(ways.at(k))) continue;
             const auto columns = static_cast<std::size_t>(covered.geometry.columns);
             const PlanPoint p = covered.geometry.centre(static_cast<int>(k % columns), static_cast<int>(k / columns));
-            reached.push_back(reach(ways.at(k), {p.x, p.y, ground.terrain.elevation_at(p)}));
+            const double ground_there = ground.terrain.elevation_at(p);
+            // The cells that it left through may have their centres beyond the edge.
+            if (!std::isnan(ground_there)) reached.push_back(reach(ways.at(k), {p.x, p.y, ground_there}));
         }
     }
     if (reached.empty()) return run_out;

@@ -13,6 +13,7 @@ namespace {
 constexpr double unreached = std::numeric_limits<double>::infinity();
 constexpr double longest_sight = 200;  ///< cells; a bend is inserted after this length, which hardly changes any
                                        ///< distance
+constexpr double widest_gap = 2;       ///< times an island's narrowest: one beside the trail has many about as narrow
 
 double distance(const PlanPoint& a, const PlanPoint& b) {
     return std::hypot(b.x - a.x, b.y - a.y);
@@ -46,33 +47,21 @@ TrailDistances::TrailDistances(const Grid<float>& covered, const PlanPoint& from
     if (first < 0) return;
     length_[static_cast<std::size_t>(first)] = distance(from, centre(first));
     open_.emplace_back(length_[static_cast<std::size_t>(first)], first);
-    search(false);
-
-    const auto reached = [&](std::size_t k) { return covered_[k] == 0 || settled_[k] != 0; };
-    bool all = true;
-    for (std::size_t k = 0; k < covered_.size() && all; ++k) all = reached(k);
-    if (all) return;
-    for (std::size_t k = 0; k < covered_.size(); ++k) {
-        if (settled_[k] == 0) continue;
-        settled_[k] = 0;
-        bend_[k] = static_cast<Cell>(k);
-        open_.emplace_back(length_[k], static_cast<Cell>(k));
-    }
-    std::make_heap(open_.begin(), open_.end(), std::greater<>{});
-    search(true);
+    search();
+    join_islands();
 }
 
-void TrailDistances::search(bool anywhere) {
+void TrailDistances::search() {
     while (!open_.empty()) {
         std::pop_heap(open_.begin(), open_.end(), std::greater<>{});
         const Cell cell = open_.back().second;
         open_.pop_back();
         const auto k = static_cast<std::size_t>(cell);
         if (settled_[k] != 0) continue;
-        settle(cell, anywhere);
+        settle(cell);
         for_each_neighbour(geometry_, cell, [&](Cell other) {
             const auto n = static_cast<std::size_t>(other);
-            if (settled_[n] != 0 || (!anywhere && covered_[n] == 0)) return;
+            if (settled_[n] != 0 || covered_[n] == 0) return;
             // Assumes that it is visible from the last bend: settle() checks.
             const double way = bend_length(cell) + distance(bend(cell), centre(other));
             if (way >= length_[n]) return;
@@ -84,28 +73,114 @@ void TrailDistances::search(bool anywhere) {
     }
 }
 
-void TrailDistances::settle(Cell cell, bool anywhere) {
+void TrailDistances::settle(Cell cell) {
     const auto k = static_cast<std::size_t>(cell);
-    if (bend_[k] != cell && !in_sight(bend(cell), centre(cell), anywhere)) {
+    if (bend_[k] != cell && !in_sight(bend(cell), centre(cell))) {
         double shortest = unreached;
+        if (upstream_[k] >= 0) {  // an island's cell that a gap leads to
+            shortest = length_[k] = length_at(upstream_[k]) + distance(centre(upstream_[k]), centre(cell));
+            bend_[k] = cell;
+        }
+        const auto try_from = [&](Cell at, double way) {
+            if (way >= shortest) return;
+            shortest = length_[k] = way;
+            bend_[k] = at;
+        };
         for_each_neighbour(geometry_, cell, [&](Cell other) {
             const auto n = static_cast<std::size_t>(other);
             if (settled_[n] == 0) return;
-            const double way = length_[n] + distance(centre(other), centre(cell));
-            if (way >= shortest) return;
-            shortest = way;
-            length_[k] = way;
-            bend_[k] = other;
+            try_from(other, length_[n] + distance(centre(other), centre(cell)));
+            if (in_sight(bend(other), centre(cell))) {
+                try_from(bend_[n], bend_length(other) + distance(bend(other), centre(cell)));
+            }
         });
     }
     if (bend_[k] != cell) upstream_[k] = bend_[k];
     settled_[k] = 1;
 }
 
-bool TrailDistances::in_sight(const PlanPoint& a, const PlanPoint& b, bool anywhere) const {
+/// In the order of their distance from the trail, as Prim (1957) joins towns: an island beyond another one is reached
+/// over that. The trail's own lengths stay.
+void TrailDistances::join_islands() {
+    std::vector<Edge> edges = island_edges();
+    if (edges.empty()) return;
+    std::vector<Place> joined;  // since the last island
+    for (std::size_t k = 0; k < covered_.size(); ++k) {
+        const auto cell = static_cast<Cell>(k);
+        if (settled_[k] != 0 && at_edge(cell)) joined.push_back({centre(cell), cell});
+    }
+    while (!edges.empty()) {
+        for (Edge& edge : edges) approach(edge, joined);
+        const auto nearest = std::min_element(edges.begin(), edges.end(), [&](const Edge& a, const Edge& b) {
+            return std::pair(a.gap, length_at(a.from)) < std::pair(b.gap, length_at(b.from));
+        });
+        const double widest = widest_gap * nearest->gap;
+        const std::int32_t island = nearest->island;
+        const auto rest = std::partition(edges.begin(), edges.end(), [&](const Edge& s) { return s.island != island; });
+        joined.clear();
+        for (auto edge = rest; edge != edges.end(); ++edge) {
+            joined.push_back({centre(edge->cell), edge->cell});
+            if (edge->gap > widest) continue;
+            const auto k = static_cast<std::size_t>(edge->cell);
+            length_[k] = length_at(edge->from) + edge->gap;
+            bend_[k] = edge->cell;
+            upstream_[k] = edge->from;
+            open_.emplace_back(length_[k], edge->cell);
+        }
+        edges.erase(rest, edges.end());
+        std::make_heap(open_.begin(), open_.end(), std::greater<>{});
+        search();
+    }
+}
+
+std::vector<TrailDistances::Edge> TrailDistances::island_edges() const {
+    std::vector<Edge> edges;
+    std::vector<std::uint8_t> seen = settled_;
+    std::vector<Cell> cells;
+    std::int32_t island = 0;
+    for (std::size_t k = 0; k < covered_.size(); ++k) {
+        if (covered_[k] == 0 || seen[k] != 0) continue;
+        cells.assign(1, static_cast<Cell>(k));
+        seen[k] = 1;
+        while (!cells.empty()) {
+            const Cell cell = cells.back();
+            cells.pop_back();
+            if (at_edge(cell)) edges.push_back({cell, island});
+            for_each_neighbour(geometry_, cell, [&](Cell other) {
+                const auto n = static_cast<std::size_t>(other);
+                if (covered_[n] == 0 || seen[n] != 0) return;
+                seen[n] = 1;
+                cells.push_back(other);
+            });
+        }
+        ++island;
+    }
+    return edges;
+}
+
+bool TrailDistances::at_edge(Cell cell) const {
+    bool beside_dry = false;
+    for_each_neighbour(geometry_, cell,
+                       [&](Cell other) { beside_dry = beside_dry || covered_[static_cast<std::size_t>(other)] == 0; });
+    return beside_dry;
+}
+
+void TrailDistances::approach(Edge& edge, const std::vector<Place>& joined) const {
+    const PlanPoint at = centre(edge.cell);
+    double nearest = edge.gap * edge.gap;
+    for (const Place& place : joined) {
+        const double dx = place.at.x - at.x, dy = place.at.y - at.y, square = dx * dx + dy * dy;
+        if (square > nearest || (square == nearest && length_at(place.cell) >= length_at(edge.from))) continue;
+        nearest = square;
+        edge.from = place.cell;
+    }
+    edge.gap = std::sqrt(nearest);
+}
+
+bool TrailDistances::in_sight(const PlanPoint& a, const PlanPoint& b) const {
     const double length = distance(a, b) / geometry_.cell;
     if (length > longest_sight) return false;
-    if (anywhere || length < 1.5) return true;  // adjacent, also diagonally
+    if (length < 1.5) return true;  // adjacent, also diagonally
     const auto samples = static_cast<int>(std::ceil(2 * length));
     for (int s = 1; s < samples; ++s) {
         const double share = static_cast<double>(s) / samples;
@@ -153,8 +228,7 @@ PlanPoint TrailDistances::bend(Cell cell) const {
 }
 
 double TrailDistances::bend_length(Cell cell) const {
-    const Cell at = bend_[static_cast<std::size_t>(cell)];
-    return at < 0 ? 0 : length_[static_cast<std::size_t>(at)];
+    return length_at(bend_[static_cast<std::size_t>(cell)]);
 }
 
 std::optional<std::size_t> TrailDistances::cell_on_way(const PlanPoint& p, double along) const {
@@ -162,7 +236,6 @@ std::optional<std::size_t> TrailDistances::cell_on_way(const PlanPoint& p, doubl
     if (cell < 0) return {};
     // Upstream from bend to bend, until the place lies between the bend and what comes after it.
     const auto upstream = [&](Cell c) { return upstream_[static_cast<std::size_t>(c)]; };
-    const auto length_at = [&](Cell c) { return c < 0 ? 0 : length_[static_cast<std::size_t>(c)]; };
     PlanPoint after = p;
     while (length_at(upstream(cell)) > along) {
         cell = upstream(cell);

@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <optional>
 #include <utility>
 #include <vector>
@@ -18,9 +19,12 @@ namespace talus::observe {
 /// Dijkstra's search over the covered cells, in which the path to a cell runs straight from the last bend, if the
 /// straight line stays on the trail (lazy Theta*: Nash, Koenig & Tovey 2010): on open ground it is the straight
 /// distance, without the 8 % that steps from cell to cell add.
+///
+/// Ground that debris reached through the air is an island. It is joined to what lies nearest over its narrowest gaps,
+/// and only these cross ground that was not covered.
 class TrailDistances {
   public:
-    /// `covered`: NaN where debris never was. Parts that debris reached through the air are joined to the nearest.
+    /// `covered`: NaN where debris never was.
     TrailDistances(const Grid<float>& covered, const PlanPoint& from);
 
     /// m; for a place off the trail, to the nearest covered cell and straight from there. NaN: no cell is covered.
@@ -33,14 +37,33 @@ class TrailDistances {
   private:
     using Cell = std::int32_t;
 
-    void search(bool anywhere);
-    void settle(Cell cell, bool anywhere);
-    [[nodiscard]] bool in_sight(const PlanPoint& a, const PlanPoint& b, bool anywhere) const;
+    /// A cell at the edge of an island, and the nearest cell that was joined before.
+    struct Edge {
+        Cell cell;
+        std::int32_t island;
+        Cell from = -1;
+        double gap = std::numeric_limits<double>::infinity();  ///< m
+    };
+
+    struct Place {
+        PlanPoint at;
+        Cell cell;
+    };
+
+    void search();
+    void settle(Cell cell);
+    void join_islands();
+    [[nodiscard]] std::vector<Edge> island_edges() const;
+    [[nodiscard]] bool at_edge(Cell cell) const;
+    void approach(Edge& edge, const std::vector<Place>& joined) const;
+    [[nodiscard]] bool in_sight(const PlanPoint& a, const PlanPoint& b) const;
     [[nodiscard]] Cell nearest_covered(const PlanPoint& p) const;
     [[nodiscard]] PlanPoint centre(Cell cell) const;
     /// The last bend on the path to a cell.
     [[nodiscard]] PlanPoint bend(Cell cell) const;
     [[nodiscard]] double bend_length(Cell cell) const;
+    /// 0 for -1.
+    [[nodiscard]] double length_at(Cell cell) const { return cell < 0 ? 0 : length_[static_cast<std::size_t>(cell)]; }
 
     GridGeometry geometry_;
     PlanPoint from_;

@@ -111,7 +111,8 @@ Section declare_damage() {
 }
 
 Section declare_run_out() {
-    Declaration<ObservedRunOutSpec> s("observed_run_out", "Where the front stopped.", &SceneSpec::observed_run_outs);
+    Declaration<ObservedRunOutSpec> s("observed_run_out", "The farthest chainage that the front came to, as observed.",
+                                      &SceneSpec::observed_run_outs);
     add_name(s);
     add_chainage(s);
     s.key("uncertainty_m", "m", &ObservedRunOutSpec::uncertainty, between(0.001, 1e6),

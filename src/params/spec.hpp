@@ -350,7 +350,7 @@ struct DamageSpec {
     std::string source;
 };
 
-/// `[[observed_run_out]]`: where the front stopped.
+/// `[[observed_run_out]]`: the farthest chainage of the front.
 struct ObservedRunOutSpec {
     std::string name;
     double chainage = 0;      ///< m

@@ -9,6 +9,7 @@
 
 #include "core/angle.hpp"
 #include "core/number_or_null.hpp"
+#include "observe/front_tracker.hpp"
 #include "observe/peaks.hpp"
 #include "report/hazard_map.hpp"
 #include "report/number_text.hpp"
@@ -19,6 +20,13 @@ namespace {
 
 std::string place_of(const scene::Scene& scene, const observe::Peak& peak) {
     return std::isnan(peak.value) ? "no debris mapped" : place(scene, peak.at);
+}
+
+/// m of chainage; where map cells saw the front, no less than those need.
+double front_velocity_window(const scene::Scene& scene, const run::RunResult& result) {
+    const double window = scene.spec.outputs.front_velocity_window;
+    const bool by_cells = result.depth_averaged() || result.observation.followed_path;
+    return by_cells ? std::max(window, observe::resolved_cells * result.map_cell) : window;
 }
 
 struct MassBalance {
@@ -146,9 +154,9 @@ Json key_figures(const scene::Scene& scene, const run::RunResult& result) {
                           o.run_out.at_least ? fmt::format("; debris left the {}", result.domain()) : "")
             : "no debris ran out");
     add("runout_angle_deg", "Runout angle", o.run_out.runout_angle * degrees_per_radian, "f1", ran ? "°" : "",
-        ran ? fmt::format("travel angle of the centre of mass\u00a0{}°",
-                          fixed(o.run_out.travel_angle * degrees_per_radian, 1))
-            : "");
+        std::isfinite(o.run_out.travel_angle) ? fmt::format("travel angle of the centre of mass\u00a0{}°",
+                                                            fixed(o.run_out.travel_angle * degrees_per_radian, 1))
+                                              : "");
     const observe::Hits hits = hits_among(o.buildings, false), barriers_hit = hits_among(o.buildings, true);
     const observe::BuildingImpact* worst = nullptr;
     for (const observe::BuildingImpact& b : o.buildings) {
@@ -339,7 +347,7 @@ Json run_results(const scene::Scene& scene, const run::RunResult& result,
                 {"intensity", intensity(scene, result)},
                 {"force", force_chart(result)},
                 {"front", front_chart(scene, result)},
-                {"front_velocity_window_m", scene.spec.outputs.front_velocity_window},
+                {"front_velocity_window_m", front_velocity_window(scene, result)},
                 {"time", time_chart(result)},
                 {"gauges", gauges({{"", &result}})},
                 {"zoom", zoom(result)},

@@ -176,7 +176,7 @@ class GridRun {
         ground.bed = terrain_bed(scene_, solver_.geometry(), bed_.bed());
         result.observation = observer_.finish(solver_, ground, held_);
         if (follows_debris(scene_)) {
-            observe::follow_debris(ground, scene_.flow_path, scene_.spec.flow_path.corridor_width, scene_.spec.outputs,
+            observe::follow_debris(ground, scene_.spec.flow_path.corridor_width, scene_.spec.outputs,
                                    result.observation);
         }
         result.hash = solver_.hash();

@@ -146,7 +146,7 @@ RunResult Run::result(const std::string& unfinished) const {
     }
     result.observation = threads_.execute([&] { return observer_.finish(model(), ground(), state()); });
     if (followed_corridor_width_ > 0) {
-        observe::follow_debris(ground(), observer_.flow_path(), followed_corridor_width_, outputs_, result.observation);
+        observe::follow_debris(ground(), followed_corridor_width_, outputs_, result.observation);
     }
     result.stage_times = simulation_.stage_times();
     result.hash = hash_state(state());

@@ -18,7 +18,7 @@ namespace talus::run {
 struct Progress {
     double time, end_time;  ///< s
     double real_time_factor;
-    double front_chainage;  ///< m; NaN: none
+    double front_chainage;  ///< m, farthest so far along the scene's path; NaN: none
     double share_done;      ///< 0 to 1
     double wall_remaining;  ///< s, estimate
     std::uint64_t step;

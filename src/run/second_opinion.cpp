@@ -157,7 +157,7 @@ void take_one_path(scene::Scene& scene, RunResult& particles, scene::Scene& grid
     const bool along_particles = p.followed_path && !(d.followed_path && d.run_out.along_flow > p.run_out.along_flow);
     const terrain::FlowPath path = along_particles ? *p.followed_path : *d.followed_path;
     observe::Observation& other = along_particles ? d : p;
-    measure_along(path, other.followed_path ? *other.followed_path : scene.flow_path, scene.spec.outputs, other);
+    measure_along(path, scene.spec.outputs, other);
     for (scene::Scene* each : {&scene, &grid_scene}) {
         each->flow_path = path;
         each->flow_path_origin = scene::PathOrigin::followed;

@@ -39,7 +39,7 @@ TEST_F(PredictTest, FrontAndArrivalAreThoseOfTheFront) {
     EXPECT_TRUE(std::isnan(predict_front_velocity(run, 30)));
     EXPECT_TRUE(std::isnan(predict_arrival_time(run, 30)));
     run.run_out.front_chainage = 12.5;
-    EXPECT_DOUBLE_EQ(predict_run_out(run), 12.5);
+    EXPECT_DOUBLE_EQ(predict_front_chainage(run), 12.5);
 }
 
 TEST_F(PredictTest, RunUpIsTheDepthAtTheMarkOrTheHeightThatIsMissing) {

@@ -17,7 +17,7 @@ constexpr float none = std::numeric_limits<float>::quiet_NaN();
 constexpr double trail_speed = 6;  // m/s
 
 /// Debris at `trail_speed` along a line within 6 m of it, on cells of 1 m: the observation of a run whose toe is the
-/// line's end. `traced` before the run: straight from the crown to the east.
+/// line's end.
 struct Trail {
     explicit Trail(const std::vector<PlanPoint>& points) : line(points, 12) {
         const Grid<float> empty(GridGeometry{1000, 2000, 1, 260, 140}, none);
@@ -46,7 +46,7 @@ struct Trail {
         }
     }
     [[nodiscard]] Observation& follow() {
-        follow_debris(ground, terrain::FlowPath({{1010, 2070}, {1250, 2070}}, 300), 40, outputs, o);
+        follow_debris(ground, 40, outputs, o);
         return o;
     }
 
@@ -131,6 +131,34 @@ TEST(FollowDebris, has_no_velocity_where_other_debris_was_beyond_the_front_befor
     EXPECT_GT(none_there, 20);
 }
 
+TEST(FollowDebris, does_not_cross_dry_ground_because_of_an_isolated_cell) {
+    const std::vector<PlanPoint> hairpin = {{1010, 2020}, {1200, 2020}, {1200, 2100}, {1010, 2100}};
+    Trail plain(hairpin), splashed(hairpin);
+    Observation& o = splashed.o;
+    const std::size_t k = o.maps.peak_depth.geometry.index(100, 60);  // between the arms
+    ASSERT_TRUE(std::isnan(o.maps.peak_depth.values[k]));
+    o.maps.peak_depth.values[k] = 0.05F;  // too thin to arrive
+    o.maps.peak_speed.values[k] = 1;
+    o.run_out.along_flow = TrailDistances(o.maps.peak_depth, o.run_out.crown).to(o.run_out.toe);
+    EXPECT_EQ(o.run_out.along_flow, plain.o.run_out.along_flow);
+    EXPECT_GT(o.run_out.along_flow, 400);
+    const Observation &expected = plain.follow(), &found = splashed.follow();
+    ASSERT_TRUE(found.followed_path);
+    EXPECT_EQ(found.run_out.front_chainage, expected.run_out.front_chainage);
+    ASSERT_EQ(found.front.size(), expected.front.size());
+    for (std::size_t i = 0; i < found.front.size(); ++i) {
+        EXPECT_EQ(found.front[i].arrival_time, expected.front[i].arrival_time) << i;
+    }
+}
+
+TEST(FollowDebris, has_a_front_chainage_where_releases_cover_the_whole_path) {
+    Trail trail({{1010, 2070}, {1230, 2070}});
+    for (float& time : trail.o.maps.arrival_time.values) time = std::isnan(time) ? time : 0;
+    const Observation& o = trail.follow();
+    EXPECT_TRUE(o.front.empty());
+    EXPECT_NEAR(o.run_out.front_chainage, o.followed_path->length(), 3);
+}
+
 TEST(FollowDebris, goes_with_the_branch_that_leads_to_the_toe) {
     Trail trail({{1010, 2070}, {1230, 2070}});
     trail.cover(terrain::FlowPath({{1060, 2070}, {1110, 2130}}, 12), 50 / trail_speed);
@@ -144,19 +172,20 @@ TEST(FollowDebris, goes_with_the_branch_that_leads_to_the_toe) {
     }
 }
 
-TEST(FollowDebris, moves_all_chainages_to_the_new_path) {
+TEST(FollowDebris, tells_where_the_front_was_over_time) {
     Trail trail(winding_line());
-    TimeSample sample;
-    sample.front_chainage = 140;  // along the traced path: where the line crosses it at x = 1150
-    TimeSample beside;
-    beside.front_chainage = 105;  // 30 m from the line
-    trail.o.timeseries = {sample, TimeSample{}, beside};
+    TimeSample before, early, late, after;
+    before.time = 0;
+    early.time = 10;
+    early.front_chainage = 7;  // along another path
+    late.time = 30;
+    after.time = 1000;
+    trail.o.timeseries = {before, early, late, after};
     const Observation& o = trail.follow();
-    const double expected = o.followed_path->locate({1150, 2070})->chainage;
-    EXPECT_GT(expected, 150);
-    EXPECT_EQ(o.timeseries[0].front_chainage, expected);
-    EXPECT_TRUE(std::isnan(o.timeseries[1].front_chainage));
-    EXPECT_TRUE(std::isnan(o.timeseries[2].front_chainage));
+    EXPECT_LT(o.timeseries[0].front_chainage, 4) << "what the release covers";
+    EXPECT_NEAR(o.timeseries[1].front_chainage, 10 * trail_speed, 8);
+    EXPECT_NEAR(o.timeseries[2].front_chainage, 30 * trail_speed, 8);
+    EXPECT_EQ(o.timeseries[3].front_chainage, o.run_out.front_chainage);
 }
 
 TEST(FollowDebris, leaves_all_as_it_was_where_debris_hardly_left_its_release) {
@@ -166,18 +195,6 @@ TEST(FollowDebris, leaves_all_as_it_was_where_debris_hardly_left_its_release) {
     EXPECT_FALSE(o.followed_path);
     EXPECT_EQ(o.front.size(), 1U);
     EXPECT_EQ(o.run_out.front_chainage, 205.661545);
-}
-
-TEST(TrailDistances, name_the_cell_at_a_distance_on_the_way) {
-    Trail trail({{1010, 2070}, {1110, 2070}, {1110, 2010}});
-    const Grid<float>& covered = trail.o.maps.peak_depth;
-    const TrailDistances ways(covered, {1010, 2070});
-    for (const double along : {0.5, 30.0, 90.0, 120.0, 140.0}) {
-        const auto k = ways.cell_on_way({1110, 2010}, along);
-        ASSERT_TRUE(k) << along;
-        EXPECT_NEAR(ways.at(*k), along, 1) << along;
-    }
-    EXPECT_FALSE(TrailDistances(Grid<float>(covered.geometry, none), {1010, 2070}).cell_on_way({1110, 2010}, 5));
 }
 
 }  // namespace

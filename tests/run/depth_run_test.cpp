@@ -62,6 +62,24 @@ TEST_F(DepthAveragedRun, differs_little_from_the_particles_where_both_see_a_slab
     EXPECT_NEAR(front_at(flat->observation, 60).front_velocity, front_at(particles->observation, 60).front_velocity, 2);
 }
 
+TEST_F(DepthAveragedRun, has_a_front_velocity_at_every_chainage_where_a_viscous_front_slides) {
+    const auto result = run_scene(loaded("[[observation]]\nchainage_m = 60\nfront_velocity_mps = 5\n",
+                                         {"material.friction_coefficient=0.2", "material.kinematic_viscosity_m2ps=0.05",
+                                          "material.viscosity_on_ground=true", "solver.end_time_s=15"}),
+                                  {});
+    ASSERT_TRUE(result) << result.error().message;
+    const std::vector<observe::FrontSample>& front = result->observation.front;
+    ASSERT_GT(front.size(), 60U);
+    double before = front.front().front_velocity;
+    for (const observe::FrontSample& s : front) {
+        if (s.chainage > 40) {  // clear of the release, whose rear still stands
+            EXPECT_NEAR(s.front_velocity, s.particle_speed, 0.5 * s.particle_speed) << s.chainage;
+        }
+        EXPECT_NEAR(s.front_velocity / before, 1, 0.2) << s.chainage;
+        before = s.front_velocity;
+    }
+}
+
 TEST_F(DepthAveragedRun, stops_at_a_barrier_and_measures_it) {
     const auto open = run_scene(loaded(""), {});
     const auto closed = run_scene(loaded(dam("height_m = 25")), {});

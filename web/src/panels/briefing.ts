@@ -195,7 +195,7 @@ class Briefing {
     const front = moment.part === "before" ? null : frontAt(series, moment.run_s);
     line(`t = ${fixed(moment.run_s, 1)} s`, unit, height - 2.6 * unit, 1.7 * unit, 600);
     const velocity = front?.velocity_mps;
-    line(front === null ? twin.scene.title : `Front at ${quantity(Math.round(front.chainage_m), "m")}` + (typeof velocity === "number" ? `, ${fixed(velocity, 1)} m/s` : ""),
+    line(front === null ? twin.scene.title : `Front at chainage ${quantity(Math.round(front.chainage_m), "m")}` + (typeof velocity === "number" ? `, ${fixed(velocity, 1)} m/s` : ""),
       unit, height - unit, unit);
     const hit = hitUntil(impacts, moment.run_s);
     hit.slice(0, 4).forEach(({ name, at_s }, k) => line(`${name} hit at ${fixed(at_s, 1)} s`, width - unit, height - (1 + 1.25 * k) * unit, (k === 0 ? 1 : 0.85) * unit, k === 0 ? 600 : 400, "right"));

@@ -14,7 +14,7 @@ export function runCard(twin: Twin): HTMLElement {
   };
   const front = cell("Front velocity", "Velocity of the front along the flow path");
   const fastest = cell("Largest speed", "Present maximum particle speed");
-  const chainage = cell("Front at", "Chainage of the front");
+  const chainage = cell("Front at chainage", "Chainage of the front now, along the flow path of the scene; not the run-out");
   const particles = cell("Particles", "Particles in the simulation");
   const steps = cell("Steps", "Time steps computed per second");
   const real = cell("Real time", "Simulated seconds per second");
