@@ -52,6 +52,16 @@ std::string calibration_text(const calibrate::Calibration& c, const std::filesys
     }
     if (two) text += "\nparticles less depth-averaged, where both ran\n";
     for (std::size_t j = 0; two && j < s.observations.size(); ++j) text += model_line(c.observed[j], s.observations[j]);
+    for (const auto* records : {&c.records, &c.fast_records}) {
+        const auto warnings = ensemble::judge_together(*records).warnings();
+        for (const std::string& warning : warnings) {
+            text += fmt::format("! {}{}\n",
+                                !two                    ? ""
+                                : records == &c.records ? "particles: "
+                                                        : "depth-averaged: ",
+                                warning);
+        }
+    }
     if (!s.warnings.empty()) text += "\n";
     for (const std::string& warning : s.warnings) text += "! " + warning + "\n";
     return text +

@@ -33,9 +33,9 @@ namespace fs = std::filesystem;
 
 constexpr const char* compare_help = R"(
 Runs the scene with particles and with the depth-averaged model, a second opinion that costs seconds. The result folder
-holds one page, report.html, with maps of both and their difference, front and run-out, the agreement of the affected
-area, the structures hit and where the models differ; results.json has the same as data. The folders particles and
-depth_averaged hold the whole result of each run.
+holds one page, report.html: where the models differ, the largest differences first; maps of peak depth, speed and
+dynamic pressure of both and their differences; the agreement of the affected area, front and run-out, the structures
+hit. results.json has the same as data. The folders particles and depth_averaged hold the whole result of each run.
 )";
 
 /// Wall time of the depth-averaged run over that of the particles, before it is known: that of the built-in scene.
@@ -99,6 +99,12 @@ Status write_all(Job& job, const report::BothModels& models, const run::SecondOp
 std::string text_of(const report::BothModels& models, const std::vector<std::string>& differences,
                     const fs::path& shown) {
     std::string text = models.scene.spec.scene.title + "\n";
+    for (const auto& [name, result] :
+         {std::pair{"particles", &models.particles}, {"depth-averaged", &models.depth_averaged}}) {
+        const run::RunVerdict verdict = judge(*result);
+        if (!verdict.within_limits()) text += fmt::format("  {} {}\n", name, verdict.text());
+        for (const std::string& warning : verdict.warnings()) text += "    " + warning + "\n";
+    }
     for (const std::string& sentence : differences) text += "  " + sentence + "\n";
     return text + fmt::format("  particles {:.1f} s, depth-averaged {:.1f} s of wall time\n  report {}\n",
                               models.particles.wall_time, models.depth_averaged.wall_time,
@@ -109,6 +115,7 @@ std::string json_of(const report::BothModels& models, const report::Json& result
     const auto run = [](const run::RunResult& result) {
         return report::Json{
             {"status", status_name(result.status)},
+            {"verdict", verdict_json(judge(result))},
             {"hash", to_hex(result.hash)},
             {"wall_time_s", result.wall_time},
             {"run_out_along_flow_m", number_or_null<report::Json>(result.observation.run_out.along_flow)}};
@@ -139,17 +146,14 @@ int compare_command(const CompareArguments& arguments) {
         if (both.run == 1) both.name = "particles";
         progress.report(now, both);
     };
-    const auto particles = run_scene(job->input.scene, options);
+    auto particles = run_scene(job->input.scene, options);
     progress.clear();
     if (!particles) return fail(exit_code::bad_input, particles.error().message);
     clock.base_ended(*particles);
-    // Chainages of both are along one path.
-    take_followed_path(job->input.scene, *particles);
-    job->grid_scene.flow_path = job->input.scene.flow_path;
-    job->grid_scene.flow_path_origin = job->input.scene.flow_path_origin;
-    const auto grid = run_scene(job->grid_scene, options);
+    auto grid = run_scene(job->grid_scene, options);
     progress.clear();
     if (!grid) return fail(exit_code::bad_input, grid.error().message);
+    take_one_path(job->input.scene, *particles, job->grid_scene, *grid);
 
     progress.say("writing maps, tables and reports");
     const report::BothModels models{job->input.scene, *particles, job->grid_scene, *grid};

@@ -37,6 +37,9 @@ std::string ensemble_text(const ensemble::EnsembleResult& result, const std::fil
     const ensemble::Reduction& r = result.reduction;
     std::string text = fmt::format("{} of {} runs complete, {} failed{}\n\n", r.complete, result.runs->count(),
                                    r.failed, r.missing.empty() ? "" : fmt::format(", {} not run", r.missing.size()));
+    const run::RunVerdict verdict = judge_together(r.runs);
+    for (const std::string& warning : verdict.warnings()) text += "! " + warning + "\n";
+    if (!verdict.within_limits()) text += "\n";
     text += fmt::format("{:<40}{:>10}{:>10}{:>10}  {}\n", "result", "5 %", "median", "95 %", "unit");
     for (std::size_t m = 0; m < result.measures.size(); ++m) {
         std::vector<double> values = result.values_of(m);

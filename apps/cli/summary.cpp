@@ -12,6 +12,7 @@
 #include "core/number_or_null.hpp"
 #include "products/results_json.hpp"
 #include "report/results.hpp"
+#include "run/verdict.hpp"
 #include "sim/compression.hpp"
 #include "variant_plan.hpp"
 #include "zoom_text.hpp"
@@ -64,15 +65,11 @@ std::string compression_text(const observe::Compression& c) {
 }
 
 std::string layers_text(const scene::Scene& scene, const observe::FlowThickness& flow, double spacing) {
-    const double median = flow.median / spacing;
     const std::string asked = scene.thinnest ? fmt::format("{:.4g} asked for over {}; ",
                                                            *scene.spec.solver.target_layers, scene.thinnest->name)
                                              : "";
-    return fmt::format(
-        "{}the flow was {:.1f} particles thick in the median of the trail, {:.1f} in its thinnest tenth{}", asked,
-        median, flow.thin / spacing,
-        median < observe::FlowThickness::min_layers ? "; WARNING: fewer than 2, depths, speeds and forces mean little"
-                                                    : "");
+    return fmt::format("{}the flow was {:.1f} particles thick in the median of the trail, {:.1f} in its thinnest tenth",
+                       asked, flow.median / spacing, flow.thin / spacing);
 }
 
 /// What to change where compression is above its limits.
@@ -90,6 +87,16 @@ std::string moving_text(const run::StillMoving& moving, double deposited_speed) 
 
 std::string line(const char* label, const std::string& text) {
     return fmt::format("  {:<16} {}\n", label, text);
+}
+
+std::string verdict_text(const scene::Scene& scene, const run::RunVerdict& verdict) {
+    if (verdict.within_limits()) return line("verdict", verdict.text());
+    std::string text = line("VERDICT", verdict.text());
+    for (const run::Check& check : verdict.checks) {
+        if (check.state != run::CheckState::beyond) continue;
+        text += line("", check.text + (check.key == "compression" ? remedy(scene.spec.solver) : ""));
+    }
+    return text;
 }
 
 }  // namespace
@@ -168,12 +175,7 @@ std::string summary_text(const scene::Scene& scene, const run::RunResult& result
         text += line("layers", layers_text(scene, seen.thickness, result.particle_spacing));
     }
     if (!result.depth_averaged()) text += line("compression", compression_text(seen.compression));
-    const run::NumericalVerdict verdict = numerical_verdict(result, comparisons);
-    if (verdict.converged == run::Answer::no) {
-        const bool squeezed = !seen.compression.within_limits();
-        text += line("NOT CONVERGED",
-                     verdict.text.substr(verdict.text.find(": ") + 2) + (squeezed ? remedy(scene.spec.solver) : ""));
-    }
+    text += verdict_text(scene, judge(result, comparisons));
     for (const run::Comparison& comparison : comparisons) text += comparison_text(comparison, result);
     text += line("report", (output / "report.html").string());
     return text;
@@ -204,6 +206,7 @@ std::string summary_json(const scene::Scene& scene, const run::RunResult& result
         {"event", "result"},
         {"status", status_name(result.status)},
         {"stop_reason", result.stop_reason},
+        {"verdict", verdict_json(judge(result, comparisons))},
         {"title", scene.spec.scene.title},
         {"reconstruction", scene.spec.scene.reconstruction},
         {"output", output.string()},
@@ -212,8 +215,8 @@ std::string summary_json(const scene::Scene& scene, const run::RunResult& result
         {"wall_time_s", result.wall_time},
         {"real_time_factor", result.real_time_factor()},
         {"steps", result.steps},
-        {"particles", result.depth_averaged() ? nlohmann::ordered_json() : result.particles},
-        {"particle_spacing_m", result.depth_averaged() ? nlohmann::ordered_json() : result.particle_spacing},
+        {"particles", result.depth_averaged() ? nlohmann::ordered_json() : nlohmann::ordered_json(result.particles)},
+        {"particle_spacing_m", result.depth_averaged() ? nlohmann::ordered_json() : nlohmann::ordered_json(result.particle_spacing)},
         {"target_layers", scene.thinnest ? nlohmann::ordered_json(*scene.spec.solver.target_layers) : nullptr},
         {"thread_count", result.thread_count},
         {"volume_released_m3", seen.volume_released},

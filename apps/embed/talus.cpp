@@ -296,6 +296,8 @@ int talus_get_json(talus_simulation* simulation, const char* name, const char** 
             answer = scenario.scene_json();
         } else if (wanted == "state") {
             answer = scenario.state_json();
+        } else if (wanted == "verdict") {
+            answer = scenario.verdict_json();
         } else if (wanted == "setup") {
             answer = scenario.setup_json();
         } else if (wanted == "impacts") {
@@ -303,7 +305,7 @@ int talus_get_json(talus_simulation* simulation, const char* name, const char** 
         } else if (wanted == "series") {
             answer = scenario.series_json();
         } else {
-            return Error{fmt::format("name = \"{}\": must be scene, state, setup, impacts or series", wanted)};
+            return Error{fmt::format("name = \"{}\": must be scene, state, verdict, setup, impacts or series", wanted)};
         }
         simulation->text = answer.dump();
         *text = simulation->text.c_str();

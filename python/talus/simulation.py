@@ -297,6 +297,13 @@ class Simulation:
         return Front(*(np.ctypeslib.as_array(column, (front.count,)).copy() for column in columns))
 
     @property
+    def verdict(self) -> dict[str, Any]:
+        """Whether the results so far can be relied on, as `verdict` of docs/results.md: resolution, compression, energy,
+        what still moves at the end."""
+        found: dict[str, Any] = self.json("verdict")
+        return found
+
+    @property
     def structures(self) -> list[Structure]:
         """Buildings and barriers in the order in which they were added."""
         made = []
@@ -322,7 +329,7 @@ class Simulation:
         return (created.value or b"").decode()
 
     def json(self, name: str) -> Any:
-        """"scene", "state", "setup", "impacts" or "series", as docs/protocol.md has them."""
+        """"scene", "state", "setup", "impacts" or "series", as docs/protocol.md has them; "verdict"."""
         text = ctypes.c_char_p()
         lib.call("talus_get_json", self._handle, name.encode(), ctypes.byref(text))
         return json.loads((text.value or b"").decode())

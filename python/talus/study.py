@@ -6,6 +6,7 @@ import itertools
 import os
 import sys
 import time
+import warnings
 from concurrent.futures import ProcessPoolExecutor
 from dataclasses import dataclass, field
 from typing import Any, Mapping, Sequence, Union
@@ -26,6 +27,7 @@ class Result:
     hash: str
     crs: str  #: of the terrain, "EPSG:2326" or WKT
     front: Front = field(repr=False)
+    verdict: dict[str, Any] = field(repr=False)  #: as Simulation.verdict
     structures: list[Structure] = field(repr=False)
     maps: dict[str, Map] = field(repr=False)  #: by name, see UNITS
 
@@ -101,9 +103,12 @@ def run(
         if bar:
             print(file=sys.stderr)
         maps = {name: simulation.map(name) for name in UNITS}
+        verdict = simulation.verdict
+        for warning in verdict["warnings"]:
+            warnings.warn(warning, stacklevel=2)
         return Result(
             dict(settings or {}), simulation.phase, simulation.message, simulation.time, simulation.hash, loaded["crs"],
-            simulation.front, simulation.structures, maps,
+            simulation.front, verdict, simulation.structures, maps,
         )  # fmt: skip
 
 

@@ -33,7 +33,8 @@ void add_run_rows(products::Csv& csv, const Calibration& c, const std::vector<Se
         for (const std::string& value : record.values) csv.word(value);
         for (std::size_t j = 0; j < c.observed.size(); ++j)
             csv.number(j < run.predicted.size() ? run.predicted[j] : observe::never);
-        csv.number(run.misfit).number(run.improvement).number(record.wall_time).word(record.hash).word(record.fault);
+        csv.number(run.misfit).number(run.improvement).number(record.wall_time);
+        csv.word(record.verdict.keys()).word(record.hash).word(record.fault);
         csv.end_row();
     }
 }
@@ -42,7 +43,7 @@ std::string run_csv(const Calibration& c) {
     std::string header = "run,model,phase,status";
     for (const ensemble::Factor& f : c.factors) header += "," + f.key;
     for (const ensemble::ObservedValue& o : c.observed) header += "," + o.key;
-    products::Csv csv(header + ",misfit,expected_improvement,wall_time_s,hash,fault");
+    products::Csv csv(header + ",misfit,expected_improvement,wall_time_s,beyond_limits,hash,fault");
     add_run_rows(csv, c, c.result.runs, c.records);
     add_run_rows(csv, c, c.result.fast_runs, c.fast_records);
     return csv.text();
@@ -194,6 +195,7 @@ Json calibration_json(const Calibration& c) {
     return {{"runs", r.runs.size()},
             {"complete", s.complete},
             {"failed", s.failed},
+            {"verdict", verdict_json(ensemble::judge_together(c.records))},
             {"fast_runs", fast_runs_json(s)},
             {"best_run", *r.best},
             {"best_misfit", r.runs[*r.best].misfit},

@@ -170,7 +170,13 @@ Json calibration_results(const Calibration& c, const CalibrationSummary& s, cons
     double wall = 0;
     for (const ensemble::RunRecord& record : c.records) wall += record.wall_time;
     Json all = results_head("talus calibration", *c.scene);
-    all.update({{"status", {{"name", "complete"}, {"partial", false}}},
+    const run::RunVerdict own = judge_together(c.records), fast = judge_together(c.fast_records);
+    all.update({{"status",
+                 {{"name", "complete"},
+                  {"partial", false},
+                  {"beyond_limits", report::beyond_limits(run::judge_together({own, fast}))}}},
+                {"verdict", verdict_json(own)},
+                {"fast_verdict", c.fast_records.empty() ? Json() : Json(verdict_json(fast))},
                 {"key_figures", key_figures_of(c, s)},
                 {"warnings", s.warnings},
                 {"factors", factors_of(c, s)},
@@ -193,6 +199,9 @@ std::string calibration_report(const Json& results) {
     Json page = results;
     page["report_name"] = "calibration report";
     page["masthead"] = "Back-analysis of a landslide from field observations";
+    const bool both = !results["fast_verdict"].is_null();
+    page["verdicts"] = Json::array({report::named_verdict(both ? "Particles" : "", results["verdict"])});
+    if (both) page["verdicts"].push_back(report::named_verdict("Depth-averaged", results["fast_verdict"]));
     page["has_warnings"] = !results["warnings"].empty();
     page["maps"] = nullptr;
     return render(calibration_report_files::calibration_html, page);

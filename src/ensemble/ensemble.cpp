@@ -127,6 +127,7 @@ std::optional<std::pair<RunRecord, observe::HazardMaps>> Workers::compute(std::s
         return made;
     }
     record.results = measure(*scene, *result);
+    record.verdict = judge(*result);
     record.buildings = std::move(result->observation.buildings);
     for (observe::BuildingImpact& building : record.buildings) building.history.clear();
     record.geometry = result->observation.maps.peak_depth.geometry;

@@ -48,7 +48,7 @@ std::string run_csv(const EnsembleResult& result) {
     std::string header = "run,status";
     for (const Factor& f : result.runs->plan().factors) header += "," + f.key;
     for (const Measure& m : result.measures) header += "," + m.key;
-    products::Csv csv(header + ",simulated_time_s,wall_time_s,particles,hash,fault");
+    products::Csv csv(header + ",simulated_time_s,wall_time_s,particles,beyond_limits,hash,fault");
     for (const RunRecord& run : result.reduction.runs) {
         csv.number(static_cast<double>(run.run)).word(run.complete() ? "complete" : "failed");
         for (const std::string& value : run.values) csv.word(value);
@@ -56,9 +56,8 @@ std::string run_csv(const EnsembleResult& result) {
             csv.number(m < run.results.size() ? run.results[m] : observe::never);
         csv.number(run.simulated_time)
             .number(run.wall_time)
-            .number(run.particles > 0 ? run.particles : observe::never)
-            .word(run.hash)
-            .word(run.fault);
+            .number(run.particles > 0 ? run.particles : observe::never);
+        csv.word(run.verdict.keys()).word(run.hash).word(run.fault);
         csv.end_row();
     }
     return csv.text();
@@ -399,6 +398,7 @@ Json statistics_json(const EnsembleResult& result) {
         {"runs", result.runs->count()},
         {"complete", r.complete},
         {"failed", failed},
+        {"verdict", verdict_json(judge_together(r.runs))},
         {"missing", r.missing},
         {"thresholds", {{"depth_m", t.depth}, {"speed_mps", t.speed}, {"pressure_kPa", t.pressure}}},
         {"return_period_years", result.runs->plan().return_period ? Json(*result.runs->plan().return_period) : Json()},

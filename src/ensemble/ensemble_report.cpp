@@ -414,8 +414,13 @@ Json ensemble_results(const EnsembleResult& result) {
     const Reduction& r = result.reduction;
     const bool partial = !r.missing.empty();
     const double complete = std::max<double>(1, static_cast<double>(r.complete));
+    const run::RunVerdict verdict = judge_together(r.runs);
     Json all = results_head("talus ensemble", *result.scene);
-    all.update({{"status", {{"name", partial ? "runs are missing" : "complete"}, {"partial", partial}}},
+    all.update({{"status",
+                 {{"name", partial ? "runs are missing" : "complete"},
+                  {"partial", partial},
+                  {"beyond_limits", report::beyond_limits(verdict)}}},
+                {"verdict", verdict_json(verdict)},
                 {"runs", result.runs->count()},
                 {"complete", r.complete},
                 {"missing", r.missing.size()},
@@ -440,12 +445,14 @@ Json ensemble_results(const EnsembleResult& result) {
 }
 
 Result<std::string> ensemble_report(const EnsembleResult& result, const Json& results) {
-    TALUS_ASSIGN(auto maps, map_figures(*result.scene, content_of(result)));
+    MapContent content = content_of(result);
+    if (!results["status"]["beyond_limits"].is_null()) content.beyond_limits = results["status"]["beyond_limits"];
+    TALUS_ASSIGN(auto maps, map_figures(*result.scene, content));
     Json page = results;
     page["report_name"] = "ensemble report";
     page["masthead"] = "Ensemble of landslide run-out simulations";
     page["maps"] = std::move(maps);
-    page["verdict"] = {{"not_converged", false}};  // judged of a single run only
+    page["verdicts"] = Json::array({report::named_verdict("", results["verdict"])});
     if (Json& sensitivity = page["sensitivity"]; !sensitivity.is_null()) {
         sensitivity["svg"] = sensitivity_svg(sensitivity);
     }

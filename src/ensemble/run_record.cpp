@@ -90,6 +90,7 @@ Json header_json(const std::string& plan, const RunRecord& r) {
             {"simulated_time_s", r.simulated_time},
             {"wall_time_s", r.wall_time},
             {"particles", r.particles},
+            {"checks", verdict_json(r.verdict)["checks"]},
             {"hash", r.hash},
             {"map", {g.x_min, g.y_min, g.cell, g.columns, g.rows}}};
 }
@@ -105,6 +106,7 @@ RunRecord record_of(const Json& j) {
     r.simulated_time = j.at("simulated_time_s").get<double>();
     r.wall_time = j.at("wall_time_s").get<double>();
     r.particles = j.at("particles").get<std::uint32_t>();
+    r.verdict = run::verdict_of(j.value("checks", Json::array()));
     r.hash = j.at("hash").get<std::string>();
     const Json& map = j.at("map");
     r.geometry = {map.at(0).get<double>(), map.at(1).get<double>(), map.at(2).get<double>(), map.at(3).get<int>(),
@@ -121,6 +123,14 @@ double reached_area(const observe::HazardMaps& maps) {
 }
 
 }  // namespace
+
+run::RunVerdict judge_together(const std::vector<RunRecord>& runs) {
+    std::vector<run::RunVerdict> verdicts;
+    for (const RunRecord& run : runs) {
+        if (run.complete()) verdicts.push_back(run.verdict);
+    }
+    return run::judge_together(verdicts);
+}
 
 std::vector<Measure> measures_of(const scene::Scene& scene) {
     std::vector<Measure> list = {{"run_out_m", "Run-out along the flow", "m"},

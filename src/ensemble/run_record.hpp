@@ -10,6 +10,7 @@
 #include "core/result.hpp"
 #include "observe/observation.hpp"
 #include "run/run_result.hpp"
+#include "run/verdict.hpp"
 #include "scene/scene.hpp"
 
 /// The record of a run in an ensemble: a file with a line that has the checksum of all that follows, a line of JSON
@@ -39,8 +40,9 @@ struct RunRecord {
     std::vector<observe::BuildingImpact> buildings;
     double simulated_time = 0, wall_time = 0;  ///< s
     std::uint32_t particles = 0;
-    std::string hash;       ///< of the state at the end
-    GridGeometry geometry;  ///< of the maps; no cells: debris reached nothing
+    run::RunVerdict verdict;  ///< without checks: failed, or of an earlier version
+    std::string hash;         ///< of the state at the end
+    GridGeometry geometry;    ///< of the maps; no cells: debris reached nothing
 
     [[nodiscard]] bool complete() const { return fault.empty(); }
 };
@@ -49,6 +51,9 @@ struct RunRecord {
 inline constexpr std::array<Grid<float> observe::HazardMaps::*, 5> recorded_maps = {
     &observe::HazardMaps::peak_depth, &observe::HazardMaps::peak_speed, &observe::HazardMaps::peak_pressure,
     &observe::HazardMaps::arrival_time, &observe::HazardMaps::deposit_depth};
+
+/// Of the complete runs.
+[[nodiscard]] run::RunVerdict judge_together(const std::vector<RunRecord>& runs);
 
 /// Writes under a temporary name first, so that a file with the final name is complete. `plan`: as plan_identity;
 /// `maps` all have record.geometry.

@@ -12,28 +12,35 @@ Erosion measure_erosion(const sim::Ground& ground, const terrain::FlowPath& flow
     if (bed.empty()) return erosion;
     const GridGeometry& g = ground.terrain.elevation().geometry;
     const double area = g.cell * g.cell;
-    if (!flow_path.empty()) {
-        const auto bins = static_cast<std::size_t>(flow_path.length() / chainage_interval) + 2;
-        erosion.chainage.resize(bins);
-        for (std::size_t k = 0; k < bins; ++k) {
-            erosion.chainage[k] = std::min(static_cast<double>(k) * chainage_interval, flow_path.length());
-        }
-        erosion.upstream.assign(bins, 0);
+    for (const double eroded : bed.eroded) erosion.volume += eroded * area;
+    erosion.depth = erosion_depth(g, bed.eroded);
+    set_upstream_volumes(flow_path, chainage_interval, erosion);
+    return erosion;
+}
+
+void set_upstream_volumes(const terrain::FlowPath& flow_path, double chainage_interval, Erosion& erosion) {
+    erosion.chainage.clear();
+    erosion.upstream.clear();
+    if (flow_path.empty()) return;
+    const GridGeometry& g = erosion.depth.geometry;
+    const double area = g.cell * g.cell;
+    const auto bins = static_cast<std::size_t>(flow_path.length() / chainage_interval) + 2;
+    erosion.chainage.resize(bins);
+    for (std::size_t k = 0; k < bins; ++k) {
+        erosion.chainage[k] = std::min(static_cast<double>(k) * chainage_interval, flow_path.length());
     }
+    erosion.upstream.assign(bins, 0);
     for (int row = 0; row < g.rows; ++row) {
         for (int column = 0; column < g.columns; ++column) {
-            const double eroded = bed.eroded[g.index(column, row)];
-            if (eroded == 0) continue;
-            erosion.volume += eroded * area;
+            const double eroded = erosion.depth.at(column, row);
+            if (std::isnan(eroded)) continue;
             if (const auto at = flow_path.locate(g.centre(column, row))) {
                 const auto bin = static_cast<std::size_t>(std::ceil(at->chainage / chainage_interval));
-                erosion.upstream[std::min(bin, erosion.upstream.size() - 1)] += eroded * area;
+                erosion.upstream[std::min(bin, bins - 1)] += eroded * area;
             }
         }
     }
-    for (std::size_t k = 1; k < erosion.upstream.size(); ++k) erosion.upstream[k] += erosion.upstream[k - 1];
-    erosion.depth = erosion_depth(g, bed.eroded);
-    return erosion;
+    for (std::size_t k = 1; k < bins; ++k) erosion.upstream[k] += erosion.upstream[k - 1];
 }
 
 Grid<float> erosion_depth(const GridGeometry& terrain, const std::vector<float>& eroded) {

@@ -14,6 +14,9 @@ namespace talus::observe {
 [[nodiscard]] Erosion measure_erosion(const sim::Ground& ground, const terrain::FlowPath& flow_path,
                                       double chainage_interval);
 
+/// The volumes upstream along a path, from the depths.
+void set_upstream_volumes(const terrain::FlowPath& flow_path, double chainage_interval, Erosion& erosion);
+
 /// Depths of Bed::eroded as a map: the cells of the terrain that lost something and two more on every side. NaN: no
 /// erosion. Empty if there is no such cell.
 [[nodiscard]] Grid<float> erosion_depth(const GridGeometry& terrain, const std::vector<float>& eroded);

@@ -137,25 +137,35 @@ void tell_front(const FrontRecord& front, std::vector<TimeSample>& timeseries) {
     }
 }
 
+/// Takes a path, with the front along it by the maps.
+void take_path(const terrain::FlowPath& path, const params::OutputSpec& outputs, Observation& observation) {
+    FrontRecord front = record_front(observation.maps, path, outputs);
+    tell_front(front, observation.timeseries);
+    observation.run_out.front_chainage =
+        front.arrival.empty() ? never : front.interval * static_cast<double>(front.arrival.size() - 1);
+    // What the releases cover is no arrival.
+    for (double& time : front.arrival) time = time > 0 ? time : never;
+    observation.front = front.samples();
+    observation.followed_path = path;
+}
+
 }  // namespace
 
 void follow_debris(const sim::Ground& ground, double corridor_width, const params::OutputSpec& outputs,
                    Observation& observation) {
     const HazardMaps& maps = observation.maps;
-    RunOut& run_out = observation.run_out;
+    const RunOut& run_out = observation.run_out;
     const double cell = maps.peak_depth.geometry.cell;
     if (!(run_out.along_flow > shortest_cells * cell)) return;
     const terrain::FlowPath path(find_course(maps, run_out), corridor_width);
-
-    FrontRecord front = record_front(maps, path, outputs);
-    tell_front(front, observation.timeseries);
-    run_out.front_chainage =
-        front.arrival.empty() ? never : front.interval * static_cast<double>(front.arrival.size() - 1);
-    // What the releases cover is no arrival.
-    for (double& time : front.arrival) time = time > 0 ? time : never;
-    observation.front = front.samples();
+    take_path(path, outputs, observation);
     observation.erosion = measure_erosion(ground, path, outputs.chainage_interval);
-    observation.followed_path = path;
+}
+
+void measure_along(const terrain::FlowPath& path, const params::OutputSpec& outputs, Observation& observation) {
+    take_path(path, outputs, observation);
+    if (observation.erosion.chainage.empty()) return;  // no bed
+    set_upstream_volumes(path, outputs.chainage_interval, observation.erosion);
 }
 
 }  // namespace talus::observe

@@ -22,4 +22,8 @@ namespace talus::observe {
 void follow_debris(const sim::Ground& ground, double corridor_width, const params::OutputSpec& outputs,
                    Observation& observation);
 
+/// Moves a run's front, erosion and all front chainages to the path that the debris of another run of the scene
+/// followed. Where its debris did not come to that path, it has no front there.
+void measure_along(const terrain::FlowPath& path, const params::OutputSpec& outputs, Observation& observation);
+
 }  // namespace talus::observe

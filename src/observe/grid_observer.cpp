@@ -54,6 +54,7 @@ GridObserver::GridObserver(const depth::Solver& solver, terrain::FlowPath flow_p
     : outputs_(outputs),
       flow_path_(std::move(flow_path)),
       density_(solver.material().rest_density),
+      gravity_(solver.material().gravity),
       peak_depth_(solver.geometry()),
       peak_speed_(solver.geometry()),
       arrival_time_(solver.geometry(), std::numeric_limits<float>::quiet_NaN()),
@@ -61,7 +62,8 @@ GridObserver::GridObserver(const depth::Solver& solver, terrain::FlowPath flow_p
       arrival_fastest_(solver.geometry().size(), 0),
       released_(solver.geometry()),
       chainage_(solver.geometry().size(), std::numeric_limits<float>::quiet_NaN()),
-      structures_(std::move(structures)) {
+      structures_(std::move(structures)),
+      energy_(solver.material().gravity) {
     const GridGeometry& g = solver.geometry();
     for (int row = 0; row < g.rows && !flow_path_.empty(); ++row) {
         for (int column = 0; column < g.columns; ++column) {
@@ -69,15 +71,42 @@ GridObserver::GridObserver(const depth::Solver& solver, terrain::FlowPath flow_p
             if (at) chainage_[g.index(column, row)] = static_cast<float>(at->chainage);
         }
     }
-    timeseries_.push_back(sample(solver, held, 0));
+    add_row(solver, held, 0);
+}
+
+void GridObserver::add_row(const depth::Solver& solver, double held, double steps_per_second) {
+    timeseries_.push_back(sample(solver, held, steps_per_second));
+    const TimeSample& row = timeseries_.back();
+    energy_.add(row, density_ * (row.volume_moving + row.volume_deposited), density_);
+}
+
+void GridObserver::note_inflow(double volume, double highest) {
+    volume_released_ += volume;
+    if (!(volume > 0)) return;
+    const double mass = density_ * volume;
+    energy_.bring(mass, mass * gravity_ * highest, highest, 0);
 }
 
 void GridObserver::note_release(const depth::Solver& solver, const Grid<float>& depth, double volume, double held) {
     volume_released_ += volume;
-    for (std::size_t cell = 0; cell < released_.values.size(); ++cell) released_.values[cell] += depth.values[cell];
+    const GridGeometry& g = solver.geometry();
+    for (int row = 0; row < g.rows; ++row) {
+        for (int column = 0; column < g.columns; ++column) {
+            const std::size_t cell = g.index(column, row);
+            const double added = depth.values[cell];
+            if (!(added > 0) || !solver.known(column, row)) continue;
+            released_.values[cell] += depth.values[cell];
+            // On top of what lies there.
+            const double all = solver.depth_at(column, row), bed = solver.bed_at(column, row);
+            const double mass = density_ * added * g.cell * g.cell;
+            energy_.bring(mass, mass * gravity_ * (bed + all - added / 2), bed + all, all);
+        }
+    }
     measure_cells(solver);
-    TimeSample& last = timeseries_.back();
-    if (last.time >= solver.time()) last = sample(solver, held, last.steps_per_second);
+    if (timeseries_.back().time < solver.time()) return;
+    const double rate = timeseries_.back().steps_per_second;
+    timeseries_.pop_back();
+    add_row(solver, held, rate);
 }
 
 void GridObserver::watch(const depth::Solver& solver, const std::vector<terrain::Gauge>& gauges) {
@@ -163,7 +192,19 @@ void GridObserver::after_step(const depth::Solver& solver, double held, double s
             front_ = std::isnan(chainage_[cell]) ? front_ : double{chainage_[cell]};
         }
     }
-    timeseries_.push_back(sample(solver, held, steps_per_second));
+    add_row(solver, held, steps_per_second);
+}
+
+double GridObserver::fastest(const depth::Solver& solver) const {
+    const auto thinnest = static_cast<float>(thinnest_depth());
+    float fastest = 0;
+    solver.for_each_active_row_in_turn([&](const depth::ActiveRow& row) {
+        for (int k = 0; k < row.last - row.first; ++k) {
+            if (row.depth[k] < thinnest) continue;
+            fastest = std::max(fastest, speed_of(row.u[k], row.v[k], row.slope_x[k], row.slope_y[k]));
+        }
+    });
+    return fastest;
 }
 
 double GridObserver::thinnest_depth() const {
@@ -335,9 +376,24 @@ HazardMaps GridObserver::maps(const depth::Solver& solver) const {
     return maps;
 }
 
+Energy GridObserver::measure_energy(const depth::Solver& solver, const HazardMaps& hazard) const {
+    const GridGeometry &all = solver.geometry(), &g = hazard.peak_speed.geometry;
+    const int west = static_cast<int>(std::lround((g.x_min - all.x_min) / all.cell));
+    const int south = static_cast<int>(std::lround((g.y_min - all.y_min) / all.cell));
+    Grid<float> ground(g, std::numeric_limits<float>::quiet_NaN());
+    for (int row = 0; row < g.rows; ++row) {
+        for (int column = 0; column < g.columns; ++column) {
+            if (!solver.known(west + column, south + row)) continue;
+            ground.at(column, row) = solver.bed_at(west + column, south + row);
+        }
+    }
+    return energy_.measure(hazard, ground, 0);
+}
+
 Observation GridObserver::finish(const depth::Solver& solver, const sim::Ground& ground, double held) const {
     Observation o;
     o.maps = maps(solver);
+    o.energy = measure_energy(solver, o.maps);
     o.thickness = measure_thickness(o.maps.peak_depth, ground.terrain, outputs_.arrival_depth);
     o.deposit = measure_deposit(o.maps.deposit_depth, outputs_.arrival_depth);
     const FrontRecord front = front_record();

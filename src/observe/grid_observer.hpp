@@ -5,6 +5,7 @@
 
 #include "core/grid.hpp"
 #include "depth/solver.hpp"
+#include "observe/energy.hpp"
 #include "observe/front_tracker.hpp"
 #include "observe/gauges.hpp"
 #include "observe/grid_structures.hpp"
@@ -26,7 +27,8 @@ class GridObserver {
     /// Call after debris was added to the solver: its depth by cell, m, its volume and what is still held, m3.
     void note_release(const depth::Solver& solver, const Grid<float>& depth, double volume, double held);
     /// What came in or was entrained in the last step, m3; call it before after_step().
-    void note_inflow(double volume) { volume_released_ += volume; }
+    /// `highest`: the inflow's highest energy line, m above the lowest known ground.
+    void note_inflow(double volume, double highest);
     void note_entrainment(double volume) { volume_entrained_ += volume; }
     /// Records the flow at these places from now on.
     void watch(const depth::Solver& solver, const std::vector<terrain::Gauge>& gauges);
@@ -46,6 +48,10 @@ class GridObserver {
     /// Debris thinner than this does not count as having reached a cell, m.
     [[nodiscard]] double thinnest_depth() const;
     [[nodiscard]] double front_chainage() const { return front_; }
+    /// m/s, the greatest speed that the fall of the debris explains (EnergyAccount).
+    [[nodiscard]] double greatest_speed() const { return energy_.greatest_speed(); }
+    /// m/s, along the ground, of the fastest cell that counts as reached.
+    [[nodiscard]] double fastest(const depth::Solver& solver) const;
     /// The complete results, with the debris where it is as deposit.
     [[nodiscard]] Observation finish(const depth::Solver& solver, const sim::Ground& ground, double held) const;
 
@@ -54,12 +60,14 @@ class GridObserver {
     /// The debris around a cell that it just arrived in.
     [[nodiscard]] FrontRecord::Head head_at(const depth::Solver& solver, std::size_t cell) const;
     void read_gauges(const depth::Solver& solver, bool row);
+    void add_row(const depth::Solver& solver, double held, double steps_per_second);
+    [[nodiscard]] Energy measure_energy(const depth::Solver& solver, const HazardMaps& hazard) const;
     [[nodiscard]] FrontRecord front_record() const;
     [[nodiscard]] HazardMaps maps(const depth::Solver& solver) const;
 
     params::OutputSpec outputs_;
     terrain::FlowPath flow_path_;
-    double density_;
+    double density_, gravity_;
     Grid<float> peak_depth_, peak_speed_, arrival_time_;  ///< 0 and NaN: not reached
     Grid<float> arrival_speed_;                           ///< m/s, mean of the debris around a cell on arrival
     std::vector<float> arrival_fastest_;                  ///< m/s, and its largest
@@ -67,6 +75,7 @@ class GridObserver {
     std::vector<float> chainage_;                         ///< by cell; NaN: not on the path
     GridStructures structures_;
     GaugeRecorder gauges_;
+    EnergyAccount energy_;
     std::vector<TimeSample> timeseries_;
     double volume_released_ = 0, volume_entrained_ = 0, front_ = never;
 };

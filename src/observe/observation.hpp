@@ -185,8 +185,27 @@ struct FlowThickness {
     static constexpr double min_layers = 2;  ///< in the median: depths, speeds and forces mean little below
 };
 
+/// The energy of the debris against what gravity and inflow gave it. Friction only takes energy, so neither share can
+/// be above 1 but for numerical error; with more, speeds, pressures and run-out are wrong.
+struct Energy {
+    double share = never;          ///< greatest v^2/2g of a cell of the maps over what the fall to it explains
+    double speed = never;          ///< m/s, along the ground, in that cell
+    double allowed_speed = never;  ///< m/s, the greatest that the fall explains there (energy.hpp)
+    double fall = never;           ///< m, to that cell, from the highest energy line with which debris came
+    PlanPoint at{never, never};
+    std::size_t cells = 0, cells_above = 0;  ///< of the maps with a speed; of these, those above share_limit
+    double gained = never;                   ///< greatest energy gained over what the whole fall gives; below 0: lost
+    double gained_time = never;              ///< s, when that was
+
+    [[nodiscard]] bool known() const { return share >= 0; }
+    [[nodiscard]] bool within_limits() const { return !(share > share_limit) && !(gained > gained_limit); }
+    static constexpr double share_limit = 1.1;  ///< a speed 5 % above free fall
+    static constexpr double gained_limit = 0.05;
+};
+
 struct Observation {
     HazardMaps maps;
+    Energy energy;
     FlowThickness thickness;
     Deposit deposit;
     Erosion erosion;

@@ -1,11 +1,13 @@
 #include "observe/observer.hpp"
 
 #include <algorithm>
+#include <limits>
 #include <utility>
 
 #include "observe/building_impact.hpp"
 #include "observe/debris.hpp"
 #include "observe/device/particles.hpp"
+#include "observe/energy.hpp"
 #include "observe/erosion.hpp"
 #include "observe/front_tracker.hpp"
 #include "observe/gauges.hpp"
@@ -13,6 +15,7 @@
 #include "observe/run_out.hpp"
 #include "observe/step_rate.hpp"
 #include "sim/compression.hpp"
+#include "sim/particle_density.hpp"
 
 namespace talus::observe {
 namespace {
@@ -55,8 +58,10 @@ struct Observer::Parts {
           maps(model, ground, state, map_cell, o.arrival_depth),
           front(model, ground, state, flow_path, o.chainage_interval, o.front_velocity_window),
           impact(model, ground, state, o),
+          energy(model.gravity),
           released(measure_release(ground, state)) {
         keep_starts(state, 0);
+        bring(model, ground, state, 0);
     }
 
     /// Stores the positions of the particles with ids from `first_id`.
@@ -66,6 +71,36 @@ struct Observer::Parts {
             const std::uint32_t id = state.id[i];
             if (id >= first_id && id < start.size()) start[id] = state.position.at(i);
         }
+    }
+
+    /// Energy and highest energy line of the particles with ids from `first_id`, which have just come.
+    void bring(const sim::Model& model, const sim::Ground& ground, const sim::State& state, std::uint32_t first_id) {
+        double mass = 0, heads = 0, highest = std::numeric_limits<double>::lowest(), thickness = 0;
+        for (std::uint32_t i = 0; i < state.count; ++i) {
+            if (state.id[i] < first_id) continue;
+            const LocalPoint p = state.position.at(i), v = state.velocity.at(i);
+            const double of_particle = model.particle_volume() * sim::density_of(model, state, i);
+            const double head = double{p.z} + dot(v, v) / (2 * model.gravity);
+            const double above = p.z - ground.terrain.sample(double{p.x}, double{p.y}).height;
+            mass += of_particle;
+            heads += of_particle * head;
+            highest = std::max(highest, head + model.particle_spacing / 2);
+            thickness = std::max(thickness, above + model.particle_spacing / 2);
+        }
+        energy.bring(mass, model.gravity * heads, highest, thickness);
+    }
+
+    [[nodiscard]] Energy measure_energy(const sim::Model& model, const sim::Ground& ground,
+                                        const HazardMaps& hazard) const {
+        const GridGeometry& g = hazard.peak_speed.geometry;
+        Grid<float> height(g);
+        for (int row = 0; row < g.rows; ++row) {
+            for (int column = 0; column < g.columns; ++column) {
+                const double elevation = ground.terrain.elevation_at(g.centre(column, row));
+                height.at(column, row) = static_cast<float>(elevation - ground.terrain.frame().origin.z);
+            }
+        }
+        return energy.measure(hazard, height, model.particle_spacing);
     }
 
     /// The debris of all existing releases at its start.
@@ -97,6 +132,7 @@ struct Observer::Parts {
 
     void add_row(const sim::Model& model, const Debris& debris) {
         timeseries.push_back(make_sample(model, debris, outputs.deposited_speed, front.current(), steps_per_second));
+        energy.add(timeseries.back(), debris.summary().count * model.particle_mass(), model.rest_density);
         impact.add_row(debris);
     }
 
@@ -129,6 +165,7 @@ struct Observer::Parts {
     GaugeRecorder gauges;
     FrontTracker front;
     ImpactRecorder impact;
+    EnergyAccount energy;
     ReleasedMass released;
     std::vector<LocalPoint> start;                                  ///< by particle id
     std::vector<std::pair<std::uint32_t, std::uint32_t>> injected;  ///< ids [first, last) injected during the run
@@ -175,6 +212,8 @@ void Observer::follow(const sim::Model& model, const sim::Ground& ground, const 
                       std::uint32_t first_new_id) {
     Parts& p = *parts_;
     p.keep_starts(state, first_new_id);
+    p.bring(model, ground, state, first_new_id);
+    p.energy.follow(sample(model, state), state.released() * model.particle_mass());
     p.released = p.measure_starts(model, ground);
     p.maps.follow(model, state);
     p.maps.add(state);
@@ -183,10 +222,12 @@ void Observer::follow(const sim::Model& model, const sim::Ground& ground, const 
     if (p.on_device) p.on_device->forget_walls();
 }
 
-void Observer::follow_inflow(const sim::State& state, std::uint32_t first_new_id) {
+void Observer::follow_inflow(const sim::Model& model, const sim::Ground& ground, const sim::State& state,
+                             std::uint32_t first_new_id) {
     Parts& p = *parts_;
     if (first_new_id == state.seeded) return;
     p.keep_starts(state, first_new_id);
+    p.bring(model, ground, state, first_new_id);
     if (!p.injected.empty() && p.injected.back().second == first_new_id) {
         p.injected.back().second = state.seeded;
     } else {
@@ -259,21 +300,13 @@ const terrain::FlowPath& Observer::flow_path() const {
     return parts_->front.flow_path();
 }
 
-Observation Observer::finish(const sim::Model& model, const sim::Ground& ground, const sim::State& state) const {
+Observation Observer::checked(const sim::Model& model, const sim::Ground& ground, const sim::State& state) const {
     const Parts& p = *parts_;
     Observation observation;
     observation.maps = p.maps.maps();
+    observation.energy = p.measure_energy(model, ground, observation.maps);
     observation.thickness = measure_thickness(observation.maps.peak_depth, ground.terrain, p.outputs.arrival_depth);
-    observation.deposit = measure_deposit(observation.maps.deposit_depth, p.outputs.arrival_depth);
-    observation.front = p.front.samples();
-    const ReleasedMass released = p.injected.empty() ? p.released : p.measure_starts(model, ground);
-    observation.run_out = measure_run_out(ground, state, observation.maps.peak_depth, released, p.front.farthest());
-    observation.buildings = p.impact.complete(state);
-    observation.timeseries = p.timeseries;
-    observation.gauges = p.gauges.records();
-    if (p.timeseries.back().time < state.time) observation.timeseries.push_back(sample(model, state));
-    observation.erosion = measure_erosion(ground, p.front.flow_path(), p.outputs.chainage_interval);
-    observation.volume_released = state.released() * model.particle_volume();
+    observation.timeseries = {sample(model, state)};
     observation.compression = p.compression;
     if (state.time > 0) {
         observation.compression.time_share_above = p.compressed_time / state.time;
@@ -282,6 +315,23 @@ Observation Observer::finish(const sim::Model& model, const sim::Ground& ground,
     if (p.steps > 0) {
         observation.compression.mean_iterations = static_cast<double>(p.iterations) / static_cast<double>(p.steps);
     }
+    return observation;
+}
+
+Observation Observer::finish(const sim::Model& model, const sim::Ground& ground, const sim::State& state) const {
+    const Parts& p = *parts_;
+    Observation observation = checked(model, ground, state);
+    const TimeSample now = observation.timeseries.back();
+    observation.deposit = measure_deposit(observation.maps.deposit_depth, p.outputs.arrival_depth);
+    observation.front = p.front.samples();
+    const ReleasedMass released = p.injected.empty() ? p.released : p.measure_starts(model, ground);
+    observation.run_out = measure_run_out(ground, state, observation.maps.peak_depth, released, p.front.farthest());
+    observation.buildings = p.impact.complete(state);
+    observation.timeseries = p.timeseries;
+    observation.gauges = p.gauges.records();
+    if (p.timeseries.back().time < state.time) observation.timeseries.push_back(now);
+    observation.erosion = measure_erosion(ground, p.front.flow_path(), p.outputs.chainage_interval);
+    observation.volume_released = state.released() * model.particle_volume();
     return observation;
 }
 

@@ -30,7 +30,8 @@ class Observer final : public sim::StepWatcher {
     void observe(const sim::Model& model, const sim::Ground& ground, const sim::State& state) override;
     bool observe_on(sim::device::Backend& backend, const sim::Model& model, const sim::Ground& ground,
                     const sim::StateSummary& state) override;
-    void follow_inflow(const sim::State& state, std::uint32_t first_new_id) override;
+    void follow_inflow(const sim::Model& model, const sim::Ground& ground, const sim::State& state,
+                       std::uint32_t first_new_id) override;
     [[nodiscard]] const std::vector<std::size_t>& failed_buildings() const override;
 
     /// Measures a completed step. `steps_per_second` is copied to the time series.
@@ -67,6 +68,10 @@ class Observer final : public sim::StepWatcher {
     [[nodiscard]] const std::vector<GaugeRecord>& gauges() const;
     [[nodiscard]] const terrain::FlowPath& flow_path() const;
 
+    /// Only what says whether the run can be relied on: peak maps, thickness, compression, energy, and a row of the
+    /// time series of now.
+    [[nodiscard]] Observation checked(const sim::Model& model, const sim::Ground& ground,
+                                      const sim::State& state) const;
     /// The complete results, with the debris in its current position as deposit.
     [[nodiscard]] Observation finish(const sim::Model& model, const sim::Ground& ground, const sim::State& state) const;
 

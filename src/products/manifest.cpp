@@ -18,6 +18,7 @@
 #include "products/writers.hpp"
 #include "report/hardware.hpp"
 #include "report/hazard_map.hpp"
+#include "run/verdict.hpp"
 #include "sim/backend_choice.hpp"
 #include "sim/device/card.hpp"
 
@@ -315,6 +316,7 @@ Status write_manifest(const scene::Scene& scene, const run::RunResult& result,
         {"status", status_text(result.status)},
         {"partial", result.status != run::RunStatus::complete},
         {"stop_reason", result.stop_reason},
+        {"verdict", verdict_json(judge(result, comparisons))},
         {"reconstruction", info.reconstruction},
         {"result_hash", to_hex(result.hash)},
         {"results", results(result)},

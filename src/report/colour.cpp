@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <numbers>
 
 #include <fmt/format.h>
@@ -89,6 +90,38 @@ Classes even_classes(double largest, const Ramp& ramp) {
         for (int k = 1; k * step < largest; ++k) breaks.push_back(k * step);
     }
     return fixed_classes(breaks, std::isfinite(largest) ? largest : 0, ramp);
+}
+
+Classes difference_classes(double usual) {
+    constexpr std::array<Colour, 9> colours = {{{127, 59, 8},
+                                                {190, 100, 10},
+                                                {230, 150, 60},
+                                                {250, 208, 150},
+                                                {226, 226, 226},
+                                                {166, 206, 232},
+                                                {92, 160, 208},
+                                                {40, 110, 175},
+                                                {8, 48, 107}}};
+    double outer = 1;
+    if (usual > 0 && std::isfinite(usual)) {
+        const double power = std::pow(10, std::floor(std::log10(usual)));
+        outer = 10 * power;
+        for (const double m : {5.0, 2.0, 1.0}) {
+            if (usual <= m * power * (1 + 1e-9)) outer = m * power;
+        }
+    }
+    Classes classes;
+    classes.colours.assign(colours.begin(), colours.end());
+    classes.breaks = {-std::numeric_limits<double>::infinity(),
+                      -outer,
+                      -outer / 2,
+                      -outer / 4,
+                      -outer / 10,
+                      outer / 10,
+                      outer / 4,
+                      outer / 2,
+                      outer};
+    return classes;
 }
 
 double round_step(double value) {

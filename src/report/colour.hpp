@@ -43,6 +43,10 @@ struct Classes {
 /// Classes of equal round width from 0, at most about eight.
 [[nodiscard]] Classes even_classes(double largest, const Ramp& ramp);
 
+/// Classes of differences around 0, as wide below as above: blue above, orange below (both also with colour blindness),
+/// grey up to a tenth. The outer limits are the number of 1, 2, 5, 10, ... at or above `usual`.
+[[nodiscard]] Classes difference_classes(double usual);
+
 /// The round number (1, 2, 2.5 or 5 times a power of ten) at or above `value`.
 [[nodiscard]] double round_step(double value);
 

@@ -24,7 +24,8 @@ struct HazardMap {
     Grid<float> observe::HazardMaps::*grid = nullptr;  ///< nullptr: not one of a single run's maps
     std::vector<double> breaks;  ///< lower limits of the classes; below the first: not drawn. Empty: even classes
     report::Ramp ramp;
-    double full_scale = 0;  ///< classes reach at least up to here, so that maps of a kind have the same colours
+    double full_scale = 0;          ///< classes reach at least up to here, so that maps of a kind have the same colours
+    std::vector<Colour> colours{};  ///< of the classes of `breaks`, all of them, in place of the ramp
     std::vector<Category> categories{};  ///< of the values 1, 2, ...; then breaks and ramp are not used
 };
 

@@ -46,6 +46,25 @@ double largest(const Grid<float>& grid) {
     return most;
 }
 
+double smallest(const Grid<float>& grid) {
+    double least = std::numeric_limits<double>::quiet_NaN();
+    for (const float v : grid.values) {
+        if (!std::isnan(v) && !(v >= least)) least = v;
+    }
+    return least;
+}
+
+/// Under a map's name: what its classes are of.
+std::string measure_text(const MapLayer& shown, double most) {
+    const HazardMap& layer = shown.style;
+    if (!layer.categories.empty()) return shown.legend;
+    if (!std::isfinite(most)) return layer.unit;
+    const std::string upper = fixed(most, shown.digits);
+    if (layer.colours.empty()) return fmt::format("{}, at most {} {}", layer.unit, upper, layer.unit);
+    return fmt::format("{}, from {} to {}", layer.unit, fixed(smallest(*shown.grid) * layer.factor, shown.digits),
+                       upper);
+}
+
 /// Classes of a layer over its part inside the frame, finer than its cells: values are interpolated between them.
 ClassImage paint(const HazardMap& layer, const Grid<float>& map, const Classes& classes) {
     const GridGeometry& g = map.geometry;
@@ -113,16 +132,15 @@ void draw_classes(Svg& svg, const MapLayer& shown, const Classes& classes, doubl
     const double x = frame.right() + 20;
     constexpr std::size_t wide = 22;  // letters that the column has room for
     svg.text(shown.tab.size() > wide ? "legend-title long" : "legend-title", x, frame.top + 13, shown.tab);
-    svg.text("legend-unit", x, frame.top + 31,
-             !layer.categories.empty() ? shown.legend
-             : std::isfinite(most) ? fmt::format("{}, at most {} {}", layer.unit, fixed(most, shown.digits), layer.unit)
-                                   : layer.unit);
+    svg.text("legend-unit", x, frame.top + 31, measure_text(shown, most));
     const std::size_t n = classes.breaks.size();
     for (std::size_t k = n; k-- > 0;) {
         const double y = frame.top + 44 + 18.0 * static_cast<double>(n - 1 - k);
-        const std::string from = coordinate(classes.breaks[k]);
-        const std::string text = !layer.categories.empty() ? layer.categories[k].name
-                                 : k + 1 < n ? fmt::format("{} – {}", from, coordinate(classes.breaks[k + 1]))
+        const auto limit = [](double value) { return (value < 0 ? "−" : "") + plain(std::abs(value)); };
+        const std::string from = limit(classes.breaks[k]);
+        const std::string text = !layer.categories.empty()       ? layer.categories[k].name
+                                 : std::isinf(classes.breaks[k]) ? "below " + limit(classes.breaks[k + 1])
+                                 : k + 1 < n ? fmt::format("{} – {}", from, limit(classes.breaks[k + 1]))
                                              : (n > 1 ? "over " : "from ") + from;
         draw_swatch(svg, x, y, classes.colours[k]);
         svg.text("legend", x + 39, y + 13.5, text);
@@ -144,6 +162,7 @@ Classes classes_of(const HazardMap& layer, double most) {
         classes.colours.push_back(category.colour);
     }
     if (!classes.breaks.empty()) return classes;
+    if (!layer.colours.empty()) return {layer.breaks, layer.colours};
     if (layer.breaks.empty()) return even_classes(most, layer.ramp);
     return fixed_classes(layer.breaks, std::max(layer.full_scale, std::isnan(most) ? 0 : most), layer.ramp);
 }
@@ -311,6 +330,7 @@ Result<Json> map_figures(const scene::Scene& scene, const MapContent& content) {
         out["layers"].push_back(
             {{"file", layer.file},
              {"name", shown.tab},
+             {"group", shown.group},
              {"svg", figure_svg(width, height, "Map: " + shown.tab, picture, 1.04 * width, print_width(frame))},
              {"about", shown.caption},
              {"classed", !layer.categories.empty()},

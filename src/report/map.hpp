@@ -40,6 +40,7 @@ struct MapLayer {
     std::string caption;                ///< a sentence
     int digits = 2;                     ///< of values
     std::string legend{};               ///< over the classes of a map without a measure
+    std::string group{};                ///< begins the tabs of maps that belong together; empty: none
 };
 
 /// How the maps' buildings are coloured: classes 0 (not at all) to 3.
@@ -59,7 +60,7 @@ struct MapContent {
     BuildingMarks buildings;
     std::vector<MapLayer> layers;
     std::shared_ptr<const Grid<float>> made{};  ///< the grid of a layer that the maps alone have
-    bool not_converged = false;                 ///< said on every map
+    std::string beyond_limits{};                ///< said on every map; empty: nothing is
     std::optional<Polygon> zoom{};              ///< all results are of this area
 };
 

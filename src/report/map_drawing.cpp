@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <numbers>
 #include <vector>
@@ -259,7 +260,10 @@ void draw_frame(Svg& svg, const scene::Scene& scene, const MapContent& content, 
     const double left = frame.left + 10, first = frame.top + 20, line_height = 18;
     const bool reconstruction = scene.spec.scene.reconstruction;
     if (reconstruction) svg.text("map-flag", left, first, "RECONSTRUCTION");
-    if (content.not_converged) svg.text("map-flag", left, first + (reconstruction ? line_height : 0), "NOT CONVERGED");
+    if (content.beyond_limits.empty()) return;
+    std::string flag = content.beyond_limits;
+    for (char& letter : flag) letter = static_cast<char>(std::toupper(static_cast<unsigned char>(letter)));
+    svg.text("map-flag", left, first + (reconstruction ? line_height : 0), flag);
 }
 
 double key_height(const scene::Scene& scene, const MapContent& content) {

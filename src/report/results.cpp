@@ -1,7 +1,6 @@
 #include "report/results.hpp"
 
 #include <algorithm>
-#include <cctype>
 #include <chrono>
 #include <cmath>
 
@@ -11,6 +10,7 @@
 #include "core/angle.hpp"
 #include "core/number_or_null.hpp"
 #include "observe/front_tracker.hpp"
+#include "observe/peaks.hpp"
 #include "report/hazard_map.hpp"
 #include "report/number_text.hpp"
 #include "sim/compression.hpp"
@@ -18,24 +18,7 @@
 namespace talus::report {
 namespace {
 
-struct Peak {
-    double value = observe::never;
-    PlanPoint at;
-};
-
-Peak peak_of(const Grid<float>& map) {
-    Peak peak;
-    for (int r = 0; r < map.geometry.rows; ++r) {
-        for (int c = 0; c < map.geometry.columns; ++c) {
-            const double v = map.at(c, r);
-            if (std::isnan(v) || v <= peak.value) continue;
-            peak = {v, map.geometry.centre(c, r)};
-        }
-    }
-    return peak;
-}
-
-std::string place_of(const scene::Scene& scene, const Peak& peak) {
+std::string place_of(const scene::Scene& scene, const observe::Peak& peak) {
     return std::isnan(peak.value) ? "no debris mapped" : place(scene, peak.at);
 }
 
@@ -96,23 +79,34 @@ Json still_moving(const run::RunResult& result) {
             {"slow_since_s", number_or_null<Json>(moving.slow_since)}};
 }
 
-Json status(const run::RunResult& result) {
+Json status(const run::RunResult& result, const run::RunVerdict& verdict) {
     const bool fault = result.status == run::RunStatus::fault, complete = result.status == run::RunStatus::complete;
     return {{"name", complete ? "complete"
                      : fault  ? "fault"
                               : "interrupted"},
             {"partial", !complete},
+            {"beyond_limits", beyond_limits(verdict)},
             {"fault", fault},
             {"stop_reason", result.stop_reason},
             {"simulated_time_s", result.simulated_time},
             {"still_moving", still_moving(result)}};
 }
 
-Json verdict(const run::NumericalVerdict& said) {
-    const Json converged = said.converged == run::Answer::unknown ? Json() : Json(said.converged == run::Answer::yes);
-    std::string text = said.text;
-    text[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(text[0])));
-    return {{"converged", converged}, {"not_converged", said.converged == run::Answer::no}, {"text", text}};
+Json beyond_limits(const run::RunVerdict& verdict) {
+    return verdict.within_limits() ? Json() : Json(verdict.text());
+}
+
+Json named_verdict(std::string_view name, const Json& verdict) {
+    Json shown = {{"name", name}, {"within_limits", verdict["within_limits"]}, {"checks", Json::array()}};
+    for (const Json& check : verdict["checks"]) {
+        // The depth-averaged model has no such thing.
+        if (check["key"] == "compression" && check["state"] == "not_measured") continue;
+        shown["checks"].push_back({{"name", check["name"]},
+                                   {"beyond", check["state"] == "beyond"},
+                                   {"not_measured", check["state"] == "not_measured"},
+                                   {"text", check["text"]}});
+    }
+    return shown;
 }
 
 Json compression(const scene::Scene& scene, const run::RunResult& result) {
@@ -194,8 +188,7 @@ Json key_figures(const scene::Scene& scene, const run::RunResult& result) {
     }
     all.push_back(key_figure("buildings_hit", "Buildings hit", hits.hit, "f0", fmt::format("of {}", hits.all),
                              hits_note, hits.hit > 0));
-    const Peak depth = peak_of(o.maps.peak_depth), speed = peak_of(o.maps.peak_speed),
-               pressure = peak_of(o.maps.peak_pressure);
+    const auto [depth, speed, pressure] = measure_peaks(o.maps);
     add("peak_depth_m", "Peak flow depth", depth.value, "f1", "m", place_of(scene, depth));
     add("peak_speed_mps", "Peak speed", speed.value, "f1", "m/s", place_of(scene, speed));
     add("peak_dynamic_pressure_kPa", "Peak dynamic pressure", pressure.value / 1e3, "s3", "kPa",
@@ -229,15 +222,7 @@ Json layers(const scene::Scene& scene, const run::RunResult& result) {
                 enough ? "" : warning, enough);
 }
 
-Json numerics(const run::RunResult& result, const run::NumericalVerdict& verdict) {
-    if (verdict.converged == run::Answer::unknown) {
-        return fact("Numerics",
-                    verdict.text + (result.zoom ? "" : "; talus run --convergence compares with finer numerics"));
-    }
-    return fact("Numerics", "", verdict.text, verdict.converged == run::Answer::yes);
-}
-
-Json quality(const scene::Scene& scene, const run::RunResult& result, const run::NumericalVerdict& verdict) {
+Json quality(const scene::Scene& scene, const run::RunResult& result) {
     const observe::Observation& o = result.observation;
     const char* state = result.status == run::RunStatus::complete      ? "complete"
                         : result.status == run::RunStatus::interrupted ? "partial: interrupted"
@@ -294,7 +279,7 @@ Json quality(const scene::Scene& scene, const run::RunResult& result, const run:
                         scene.spec.solver.iteration_count, scene.spec.solver.extra_iteration_count,
                         significant(100 * c.time_share_iterated, 2), fixed(c.mean_iterations, 1))
                   : fmt::format("{} per step", scene.spec.solver.iteration_count)),
-         numerics(result, verdict), balance});
+         balance});
     return all;
 }
 
@@ -362,16 +347,16 @@ Json results_head(std::string_view format, const scene::Scene& scene) {
 
 Json run_results(const scene::Scene& scene, const run::RunResult& result,
                  const std::vector<run::Comparison>& comparisons) {
-    const run::NumericalVerdict said = numerical_verdict(result, comparisons);
+    const run::RunVerdict verdict = judge(result, comparisons);
     Json all = results_head("talus results", scene);
-    all.update({{"status", status(result)},
-                {"verdict", verdict(said)},
+    all.update({{"status", status(result, verdict)},
+                {"verdict", verdict_json(verdict)},
                 {"depth_averaged", result.depth_averaged() ? Json{{"grid_cell_m", result.grid_cell}} : Json()},
                 {"compression", compression(scene, result)},
                 {"flow_thickness", flow_thickness(scene, result)},
                 {"key_figures", key_figures(scene, result)},
                 {"observations", observations(scene, result)},
-                {"quality", quality(scene, result, said)},
+                {"quality", quality(scene, result)},
                 {"buildings", buildings(scene, result)},
                 {"barriers", barriers(result)},
                 {"impact_filter_window_s", scene.spec.outputs.impact_filter_window},

@@ -6,6 +6,7 @@
 #include "report/table.hpp"
 #include "run/comparison.hpp"
 #include "run/run_result.hpp"
+#include "run/verdict.hpp"
 #include "scene/scene.hpp"
 
 /// The content of reports as data: results.json, described in docs/results.md.
@@ -23,7 +24,11 @@ constexpr int results_version = 3;
 // Its parts. Null where there is nothing to tell.
 /// What `[report]` says: client, reference, ...; null where it says nothing.
 [[nodiscard]] Json title_block(const params::ReportSpec& report);
-[[nodiscard]] Json status(const run::RunResult& result);
+/// `beyond_limits`: which checks of the verdict are, as text; null: none.
+[[nodiscard]] Json status(const run::RunResult& result, const run::RunVerdict& verdict);
+[[nodiscard]] Json beyond_limits(const run::RunVerdict& verdict);
+/// A verdict as the template `verdict` shows it: `name` says whose; empty: the only one.
+[[nodiscard]] Json named_verdict(std::string_view name, const Json& verdict);
 /// What was not at rest at the end: volume, share, greatest speed.
 [[nodiscard]] Json still_moving(const run::RunResult& result);
 /// Compression of the debris, and what to change if it was too high; null in the depth-averaged model.

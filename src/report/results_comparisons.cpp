@@ -198,8 +198,14 @@ Json comparison(const run::Comparison& comparison, const scene::Scene& scene, co
         named.push_back({{"name", variant.name}, {"sets", variant.overrides}, {"about", variant.about}});
     }
     const bool velocities = std::any_of(comparison.quantities.begin(), comparison.quantities.end(),
-                                        [](const run::Quantity& q) { return q.unit == "m/s"; });
-    Json missing = Json::array();
+                                        [](const run::Quantity& q) { return q.key.starts_with("front_velocity"); });
+    Json missing = Json::array(), warnings = Json::array();
+    for (const run::Comparison::Row& row : comparison.rows) {
+        if (!row.run.result) continue;
+        for (const std::string& warning : judge(*row.run.result).warnings()) {
+            warnings.push_back({{"name", row.run.variant.name}, {"warning", warning}});
+        }
+    }
     for (const run::Comparison::Row& row : comparison.rows) {
         if (!row.run.result) missing.push_back({{"name", row.run.variant.name}, {"why", row.run.missing}});
     }
@@ -217,6 +223,7 @@ Json comparison(const run::Comparison& comparison, const scene::Scene& scene, co
             {"table", judged ? rows_of_quantities(comparison, base) : rows_of_runs(comparison, base)},
             {"not_measured", std::move(not_measured)},
             {"missing", judged ? std::move(missing) : Json::array()},
+            {"warnings", std::move(warnings)},
             {"has_named", !named.empty()},
             {"named", std::move(named)},
             {"without_velocities", !velocities},

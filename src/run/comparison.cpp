@@ -13,9 +13,15 @@ namespace {
 struct Measure {
     Quantity quantity;
     std::function<double(const observe::Observation&)> value;
+    observe::Peak observe::Peaks::*peak = nullptr;               // of the maps, in place of `value`
+    double scale = 1;                                            // of a peak, from SI
     std::function<bool(const observe::Observation&)> same = {};  // where a number alone is not enough: whether it is
                                                                  // the same as in the base
 };
+
+double value_in(const Measure& measure, const observe::Observation& observation, const observe::Peaks& peaks) {
+    return measure.peak ? measure.scale * (peaks.*measure.peak).value : measure.value(observation);
+}
 
 double first_building_hit(const observe::Observation& observation) {
     double first = observe::never;
@@ -97,6 +103,16 @@ Measure deposit_depth() {
     return m;
 }
 
+Measure peak(const char* key, const char* suffix, const char* name, const char* unit,
+             observe::Peak observe::Peaks::*member, double scale = 1) {
+    Measure m;
+    m.quantity = {
+        .key = key, .suffix = suffix, .name = name, .unit = unit, .not_measured = "debris reached no map cell"};
+    m.peak = member;
+    m.scale = scale;
+    return m;
+}
+
 double largest_force(const observe::Observation& observation) {
     double largest = 0;
     for (const observe::BuildingImpact& b : observation.buildings) largest = std::max(largest, b.peak_force);
@@ -158,7 +174,8 @@ void add_buildings(const observe::Observation& base, std::vector<Measure>& all) 
     }
 }
 
-std::vector<Measure> measures(ComparisonKind kind, const scene::Scene& scene, const observe::Observation& base) {
+std::vector<Measure> measures(ComparisonKind kind, const scene::Scene& scene, const observe::Observation& base,
+                              const observe::Peaks& peaks) {
     std::vector<Measure> all;
     for (const params::ObservationSpec& observed : scene.spec.observations) {
         Measure m = front_velocity(scene, observed.chainage);
@@ -170,16 +187,23 @@ std::vector<Measure> measures(ComparisonKind kind, const scene::Scene& scene, co
     all.push_back(run_out());
     all.push_back(deposit_area());
     all.push_back(deposit_depth());
+    if (kind == ComparisonKind::sensitivity) {
+        // Peaks are those of single cells: no measure of convergence.
+        all.push_back(peak("peak_depth", "m", "peak depth", "m", &observe::Peaks::depth));
+        all.push_back(peak("peak_speed", "mps", "peak speed", "m/s", &observe::Peaks::speed));
+        all.push_back(
+            peak("peak_dynamic_pressure", "kPa", "peak dynamic pressure", "kPa", &observe::Peaks::pressure, 1e-3));
+    }
     if (kind == ComparisonKind::convergence && !base.buildings.empty()) add_buildings(base, all);
     for (Measure& m : all) {
-        m.quantity.base = m.value(base);
+        m.quantity.base = value_in(m, base, peaks);
         if (std::isfinite(m.quantity.base)) m.quantity.not_measured.clear();
     }
     return all;
 }
 
-Change change_from(const Measure& measure, const observe::Observation& observation) {
-    const double base = measure.quantity.base, value = measure.value(observation);
+Change change_from(const Measure& measure, const observe::Observation& observation, const observe::Peaks& peaks) {
+    const double base = measure.quantity.base, value = value_in(measure, observation, peaks);
     Change change{value, observe::never, Verdict::fail};
     if (!std::isfinite(base) && !std::isfinite(value)) {
         change.verdict = Verdict::not_measured;
@@ -269,31 +293,19 @@ std::string Comparison::verdict_text() const {
 
 Comparison compare(ComparisonKind kind, const scene::Scene& scene, const RunResult& base,
                    std::vector<VariantRun> runs) {
-    const std::vector<Measure> all = measures(kind, scene, base.observation);
+    const std::vector<Measure> all = measures(kind, scene, base.observation, measure_peaks(base.observation.maps));
     Comparison comparison;
     comparison.kind = kind;
     for (const Measure& m : all) comparison.quantities.push_back(m.quantity);
     for (VariantRun& run : runs) {
         Comparison::Row row{std::move(run), {}};
         for (const Measure& m : all) {
-            row.changes.push_back(row.run.result ? change_from(m, row.run.result->observation) : Change{});
+            row.changes.push_back(row.run.result ? change_from(m, row.run.result->observation, row.run.peaks)
+                                                 : Change{});
         }
         comparison.rows.push_back(std::move(row));
     }
     return comparison;
-}
-
-NumericalVerdict numerical_verdict(const RunResult& result, const std::vector<Comparison>& comparisons) {
-    const observe::Compression& compression = result.observation.compression;
-    if (!compression.within_limits()) {
-        return {Answer::no, fmt::format("not converged: debris too compressed during {:.2g} % of the simulated time",
-                                        100 * compression.time_share_above)};
-    }
-    for (const Comparison& comparison : comparisons) {
-        if (comparison.kind != ComparisonKind::convergence) continue;
-        return {comparison.converged(), comparison.verdict_text()};
-    }
-    return {Answer::unknown, "convergence not tested"};
 }
 
 }  // namespace talus::run

@@ -65,19 +65,13 @@ struct Comparison {
     [[nodiscard]] std::string verdict_text() const;
 };
 
-/// Compares front velocity at every observation, arrival, run-out, area and depth of the deposit; of a convergence also
-/// which buildings are hit, and force and pressure on each. Arrival is the first hit of any building if the base hits
-/// one, else when the front passed 90 % of the chainage that it reached in the base. A building counts as hit if its
-/// force reaches `counting_force_share` of the largest in the run: a touch is not a hit.
+/// Compares front velocity at every observation, arrival, run-out, area and depth of the deposit; of a sensitivity also
+/// peak depth, speed and dynamic pressure; of a convergence also which buildings are hit, and force and pressure on
+/// each. Arrival is the first hit of any building if the base hits one, else when the front passed 90 % of the chainage
+/// that it reached in the base. A building counts as hit if its force reaches `counting_force_share` of the largest in
+/// the run: a touch is not a hit.
 [[nodiscard]] Comparison compare(ComparisonKind kind, const scene::Scene& scene, const RunResult& base,
                                  std::vector<VariantRun> runs);
 inline constexpr double counting_force_share = 0.05;
-
-/// One verdict on the numerics of a run: on its compression, and on its convergence if that was tested.
-struct NumericalVerdict {
-    Answer converged = Answer::unknown;
-    std::string text;  ///< "not converged: debris too compressed during 12 % of the simulated time"
-};
-[[nodiscard]] NumericalVerdict numerical_verdict(const RunResult& result, const std::vector<Comparison>& comparisons);
 
 }  // namespace talus::run

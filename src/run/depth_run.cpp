@@ -4,6 +4,8 @@
 #include <chrono>
 #include <cmath>
 #include <optional>
+#include <utility>
+#include <vector>
 
 #include <fmt/format.h>
 
@@ -41,6 +43,61 @@ observe::GridStructures watched_structures(depth::Solver& solver, const scene::S
     solver.watch(structures.faces());
     return structures;
 }
+/// Finds how much energy inflows bring.
+class InflowEnergy {
+  public:
+    InflowEnergy(const depth::Solver& solver, const std::vector<terrain::Inflow>& inflows) : inflows_(inflows) {
+        for (const terrain::Inflow& inflow : inflows) {
+            places_.emplace_back();
+            inflow.over_area() ? add_area(solver, inflow) : add_line(solver, inflow);
+        }
+    }
+    /// The highest energy line of what comes in now, m above the lowest known ground: ground, debris and velocity head.
+    [[nodiscard]] double highest(const depth::Solver& solver) const {
+        double highest = 0;
+        for (std::size_t k = 0; k < places_.size(); ++k) {
+            const double speed = inflows_[k].velocity_at(solver.time());
+            const double head = speed * speed / (2 * solver.material().gravity);
+            for (const auto& [column, row] : places_[k]) {
+                const double surface = double{solver.bed_at(column, row)} + solver.depth_at(column, row);
+                highest = std::max(highest, surface + head);
+            }
+        }
+        return highest;
+    }
+
+  private:
+    void add_line(const depth::Solver& solver, const terrain::Inflow& inflow) {
+        const PlanPoint along{inflow.to.x - inflow.from.x, inflow.to.y - inflow.from.y};
+        const int parts = 1 + static_cast<int>(2 * std::hypot(along.x, along.y) / solver.geometry().cell);
+        for (int k = 0; k <= parts; ++k) {
+            const double s = static_cast<double>(k) / parts;
+            add(solver, {inflow.from.x + s * along.x, inflow.from.y + s * along.y});
+        }
+    }
+    void add_area(const depth::Solver& solver, const terrain::Inflow& inflow) {
+        const GridGeometry& g = solver.geometry();
+        for (const Polygon& polygon : inflow.area) {
+            for (const PlanPoint& corner : polygon.outer) add(solver, corner);
+            const Extent e = extent_of(polygon);
+            for (double y = e.y_min; y <= e.y_max; y += g.cell) {
+                for (double x = e.x_min; x <= e.x_max; x += g.cell) {
+                    if (contains(polygon, {x, y})) add(solver, {x, y});
+                }
+            }
+        }
+    }
+    void add(const depth::Solver& solver, const PlanPoint& p) {
+        const GridGeometry& g = solver.geometry();
+        const double column = std::floor((p.x - g.x_min) / g.cell), row = std::floor((p.y - g.y_min) / g.cell);
+        if (!(column >= 0 && row >= 0 && column < g.columns && row < g.rows)) return;
+        const std::pair cell(static_cast<int>(column), static_cast<int>(row));
+        if (solver.known(cell.first, cell.second)) places_.back().push_back(cell);
+    }
+
+    const std::vector<terrain::Inflow>& inflows_;
+    std::vector<std::vector<std::pair<int, int>>> places_;  ///< columns and rows, by inflow
+};
 
 /// A run of the depth-averaged model, step by step.
 class GridRun {
@@ -50,6 +107,7 @@ class GridRun {
           ground_(grid_ground(scene)),
           solver_(ground_.bed, depth::material_of(scene.spec.material), ground_.values),
           inflows_(solver_, scene.inflows),
+          inflow_energy_(solver_, scene.inflows),
           friction_inside_(solver_, inside == Inside::as_particles ? internal_friction(scene.spec.material) : 0),
           bed_(grid_bed(scene, ground_)),
           observer_(solver_, scene.flow_path, scene.spec.outputs, watched_structures(solver_, scene, ground_),
@@ -85,13 +143,14 @@ class GridRun {
         wall_time_ += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
         smallest_ = std::min(smallest_, solver_.time_step());
         largest_ = std::max(largest_, solver_.time_step());
-        observer_.note_inflow(stepped ? *stepped : 0);
+        observer_.note_inflow(stepped ? *stepped : 0, inflow_energy_.highest(solver_));
         observer_.note_entrainment(bed_.entrain(solver_));
         observer_.after_step(solver_, held_, wall_time_ > 0 ? static_cast<double>(solver_.steps()) / wall_time_ : 0);
         release_due();
-        if (!stepped) {
-            fault_ = record_grid_fault(ground_.bed, good_, solver_, stepped.error().message);
-            stop_reason_ = stepped.error().message + fault_->sentence;
+        const Status trusted = stepped ? find_grid_fault(solver_, observer_) : Status(stepped.error());
+        if (!trusted) {
+            fault_ = record_grid_fault(ground_.bed, good_, solver_, trusted.error().message);
+            stop_reason_ = trusted.error().message + fault_->sentence;
         } else if (solver_.time() >= spec.end_time - 1e-9) {
             stop_reason_ = with_what_moved(end_time_reason(spec), moving_now());
         } else {
@@ -216,6 +275,7 @@ class GridRun {
     GridGround ground_;
     depth::Solver solver_;
     depth::Inflows inflows_;
+    InflowEnergy inflow_energy_;
     depth::InternalFriction friction_inside_;
     depth::Entrainment bed_;
     observe::GridObserver observer_;

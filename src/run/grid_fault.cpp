@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <optional>
 #include <string_view>
 #include <utility>
@@ -10,6 +11,7 @@
 #include <fmt/format.h>
 
 #include "core/number_or_null.hpp"
+#include "sim/fault.hpp"
 
 namespace talus::run {
 namespace {
@@ -81,6 +83,19 @@ GridState::GridState(const depth::Solver& solver) : time(solver.time()), step(so
             if (depth > 0) cells.push_back({column, row, depth, solver.u_at(column, row), solver.v_at(column, row)});
         }
     }
+}
+
+Status find_grid_fault(const depth::Solver& solver, const observe::GridObserver& observer) {
+    const double bound = sim::speed_margin * observer.greatest_speed() + 1;
+    // The next step says whether anything is as fast, without a look at the cells.
+    if (!(solver.next_step(std::numeric_limits<double>::max()) < solver.stable_step(bound))) return {};
+    const double fastest = observer.fastest(solver);
+    if (!(fastest > bound)) return {};
+    return Error{
+        fmt::format("at t = {:.4g} s debris of the depth-averaged model moves at {:.4g} m/s, more than its fall can "
+                    "explain ({:.4g} m/s): check the terrain for single cells that stand out, or choose another "
+                    "solver.grid_cell_m",
+                    solver.time(), fastest, bound)};
 }
 
 FaultRecord record_grid_fault(const Grid<double>& bed, const GridState& good, const depth::Solver& bad,

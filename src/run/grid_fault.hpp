@@ -5,7 +5,9 @@
 #include <vector>
 
 #include "core/grid.hpp"
+#include "core/result.hpp"
 #include "depth/solver.hpp"
+#include "observe/grid_observer.hpp"
 #include "run/fault_record.hpp"
 
 namespace talus::run {
@@ -23,6 +25,10 @@ struct GridState {
     GridState() = default;
     explicit GridState(const depth::Solver& solver);
 };
+
+/// As sim::find_fault() for particles: a speed that no fall explains, with the same margin. Call after a step that was
+/// observed.
+[[nodiscard]] Status find_grid_fault(const depth::Solver& solver, const observe::GridObserver& observer);
 
 /// As record_fault(): `good` of a few steps earlier, `bad` after the step. `bed`: elevations with structures, m.
 [[nodiscard]] FaultRecord record_grid_fault(const Grid<double>& bed, const GridState& good, const depth::Solver& bad,

@@ -127,11 +127,23 @@ void Run::follow_gauge(std::size_t inflow, const std::vector<params::InflowSampl
     stop_rule_.stir(summary().time);
 }
 
+RunStatus Run::status() const {
+    return phase_ == RunPhase::fault   ? RunStatus::fault
+           : phase_ == RunPhase::ready ? RunStatus::interrupted
+                                       : RunStatus::complete;
+}
+
+RunVerdict Run::verdict() const {
+    RunResult seen;
+    seen.status = status();
+    seen.particle_spacing = model().particle_spacing;
+    seen.observation = threads_.execute([&] { return observer_.checked(model(), ground(), state()); });
+    return judge(seen);
+}
+
 RunResult Run::result(const std::string& unfinished) const {
     RunResult result;
-    result.status = phase_ == RunPhase::fault   ? RunStatus::fault
-                    : phase_ == RunPhase::ready ? RunStatus::interrupted
-                                                : RunStatus::complete;
+    result.status = status();
     result.stop_reason =
         phase_ == RunPhase::ready ? fmt::format("{} at t = {:.4g} s", unfinished, summary().time) : stop_reason_;
     if (phase_ == RunPhase::fault) {

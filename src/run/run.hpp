@@ -12,6 +12,7 @@
 #include "run/run_result.hpp"
 #include "run/stop_rule.hpp"
 #include "run/threads.hpp"
+#include "run/verdict.hpp"
 #include "scene/scene.hpp"
 #include "sim/relax.hpp"
 #include "sim/simulation.hpp"
@@ -71,6 +72,8 @@ class Run {
     [[nodiscard]] const sim::StateSummary& summary() const { return simulation_.summary(); }
     [[nodiscard]] const sim::Simulation& simulation() const { return simulation_; }
     [[nodiscard]] const observe::Observer& observer() const { return observer_; }
+    /// Of the run so far. Costs a look at the peak maps.
+    [[nodiscard]] RunVerdict verdict() const;
     /// What is known about the first step that cannot be trusted, at fault.
     [[nodiscard]] const std::optional<FaultRecord>& fault() const { return fault_; }
     /// Parallel work on the run must use them.
@@ -84,6 +87,7 @@ class Run {
     [[nodiscard]] bool over();
     [[nodiscard]] StillMoving moving_now() const;
     void take_step();
+    [[nodiscard]] RunStatus status() const;
     void stop(RunPhase phase, std::string why);
     [[nodiscard]] bool inflow_to_come() const {
         return simulation_.inflow().remaining() > 0 || simulation_.inflow().awaits(summary().time);

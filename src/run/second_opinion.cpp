@@ -4,6 +4,11 @@
 #include <cassert>
 #include <cmath>
 #include <limits>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "observe/followed_path.hpp"
 
 namespace talus::run {
 namespace {
@@ -24,21 +29,31 @@ GridGeometry common_cells(const scene::Scene& scene, const GridGeometry& a, cons
             std::max(1, static_cast<int>(last(both.y_max, terrain.y_min) - south))};
 }
 
-/// The mean of a map over each cell; what it does not know counts as 0, and NaN is where that is all.
-Grid<float> on_cells(const Grid<float>& map, const GridGeometry& cells) {
+/// What the mean over a cell is of.
+enum class MeanOf {
+    cell,     ///< all of it, ground without debris counting as 0: a depth keeps its volume
+    covered,  ///< the ground that debris covered
+};
+
+/// The mean of a map over each cell; NaN: no debris.
+Grid<float> on_cells(const Grid<float>& map, const GridGeometry& cells, MeanOf of) {
     constexpr int parts = 4;
     Grid<float> result(cells, std::numeric_limits<float>::quiet_NaN());
     for (int row = 0; row < cells.rows; ++row) {
         for (int column = 0; column < cells.columns; ++column) {
             const PlanPoint centre = cells.centre(column, row);
             double sum = 0;
+            int covered = 0;
             for (int k = 0; k < parts * parts; ++k) {
                 const int east = k % parts, north = k / parts;
                 const float value = value_at(map, {centre.x + ((east + 0.5) / parts - 0.5) * cells.cell,
                                                    centre.y + ((north + 0.5) / parts - 0.5) * cells.cell});
-                if (value > 0) sum += value;
+                if (std::isnan(value)) continue;
+                sum += value;
+                ++covered;
             }
-            if (sum > 0) result.at(column, row) = static_cast<float>(sum / (parts * parts));
+            if (covered == 0) continue;
+            result.at(column, row) = static_cast<float>(sum / (of == MeanOf::cell ? parts * parts : covered));
         }
     }
     return result;
@@ -48,19 +63,60 @@ float zero_if_none(float value) {
     return std::isnan(value) ? 0 : value;
 }
 
-LargestDifference largest_depth_difference(const SecondOpinion& opinion) {
+LargestDifference largest_on(const MapPair& maps) {
     LargestDifference found;
-    const GridGeometry& g = opinion.difference.geometry;
+    const GridGeometry& g = maps.difference.geometry;
     for (int row = 0; row < g.rows; ++row) {
         for (int column = 0; column < g.columns; ++column) {
-            const double size = std::abs(opinion.difference.at(column, row));
+            const double size = std::abs(maps.difference.at(column, row));
             if (std::isnan(size) || (found.known() && size <= std::abs(found.size()))) continue;
-            found.particles = zero_if_none(opinion.particles.at(column, row));
-            found.depth_averaged = zero_if_none(opinion.depth_averaged.at(column, row));
+            found.particles = zero_if_none(maps.particles.at(column, row));
+            found.depth_averaged = zero_if_none(maps.depth_averaged.at(column, row));
             found.at = g.centre(column, row);
         }
     }
     return found;
+}
+
+MapPair compare_maps(const Grid<float>& particles, const Grid<float>& depth_averaged, const GridGeometry& cells,
+                     MeanOf of) {
+    MapPair maps;
+    maps.peak_particles = observe::peak_of(particles);
+    maps.peak_depth_averaged = observe::peak_of(depth_averaged);
+    maps.particles = on_cells(particles, cells, of);
+    maps.depth_averaged = on_cells(depth_averaged, cells, of);
+    maps.difference = Grid<float>(cells, std::numeric_limits<float>::quiet_NaN());
+    for (std::size_t i = 0; i < cells.size(); ++i) {
+        const float p = maps.particles.values[i], d = maps.depth_averaged.values[i];
+        if (std::isnan(p) && std::isnan(d)) continue;
+        maps.difference.values[i] = zero_if_none(d) - zero_if_none(p);
+    }
+    maps.largest = largest_on(maps);
+    return maps;
+}
+
+double median_of(const Grid<float>& map, const std::vector<std::size_t>& cells) {
+    if (cells.empty()) return observe::never;
+    std::vector<float> values;
+    values.reserve(cells.size());
+    for (const std::size_t i : cells) values.push_back(map.values[i]);
+    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+    std::nth_element(values.begin(), middle, values.end());
+    return *middle;
+}
+
+/// The medians over the ground that both covered deeper than `least`.
+void set_medians(SecondOpinion& opinion, double least) {
+    std::vector<std::size_t> shared;
+    for (std::size_t i = 0; i < opinion.depth.difference.values.size(); ++i) {
+        if (opinion.depth.particles.values[i] > least && opinion.depth.depth_averaged.values[i] > least) {
+            shared.push_back(i);
+        }
+    }
+    for (MapPair* maps : {&opinion.depth, &opinion.speed, &opinion.pressure}) {
+        maps->median_particles = median_of(maps->particles, shared);
+        maps->median_depth_averaged = median_of(maps->depth_averaged, shared);
+    }
 }
 
 LargestDifference largest_arrival_difference(const RunResult& particles, const RunResult& depth_averaged) {
@@ -95,19 +151,33 @@ AreaAgreement area_agreement(const Grid<float>& first, const Grid<float>& second
     return areas;
 }
 
-SecondOpinion second_opinion(const scene::Scene& scene, const RunResult& particles, const RunResult& depth_averaged) {
-    const Grid<float>&a = particles.observation.maps.peak_depth, &b = depth_averaged.observation.maps.peak_depth;
-    const GridGeometry cells = common_cells(scene, a.geometry, b.geometry);
-    SecondOpinion opinion;
-    opinion.particles = on_cells(a, cells);
-    opinion.depth_averaged = on_cells(b, cells);
-    opinion.difference = opinion.particles;
-    for (std::size_t i = 0; i < opinion.difference.values.size(); ++i) {
-        const float p = opinion.particles.values[i], d = opinion.depth_averaged.values[i];
-        if (!std::isnan(p) || !std::isnan(d)) opinion.difference.values[i] = zero_if_none(d) - zero_if_none(p);
+void take_one_path(scene::Scene& scene, RunResult& particles, scene::Scene& grid_scene, RunResult& depth_averaged) {
+    observe::Observation &p = particles.observation, &d = depth_averaged.observation;
+    if (!p.followed_path && !d.followed_path) return;  // both are along the scene's
+    const bool along_particles = p.followed_path && !(d.followed_path && d.run_out.along_flow > p.run_out.along_flow);
+    const terrain::FlowPath path = along_particles ? *p.followed_path : *d.followed_path;
+    observe::Observation& other = along_particles ? d : p;
+    measure_along(path, scene.spec.outputs, other);
+    for (scene::Scene* each : {&scene, &grid_scene}) {
+        each->flow_path = path;
+        each->flow_path_origin = scene::PathOrigin::followed;
+        each->notes.push_back(fmt::format(
+            "flow path: chainages of both models are along the path that debris followed {}, {:.0f} m from the crown "
+            "to the farthest deposit; the traced one was a first guess",
+            along_particles ? "with particles" : "in the depth-averaged model", path.length()));
     }
-    opinion.area = area_agreement(opinion.particles, opinion.depth_averaged, scene.spec.outputs.arrival_depth);
-    opinion.depth = largest_depth_difference(opinion);
+}
+
+SecondOpinion second_opinion(const scene::Scene& scene, const RunResult& particles, const RunResult& depth_averaged) {
+    const observe::HazardMaps &p = particles.observation.maps, &d = depth_averaged.observation.maps;
+    const GridGeometry cells = common_cells(scene, p.peak_depth.geometry, d.peak_depth.geometry);
+    SecondOpinion opinion;
+    opinion.depth = compare_maps(p.peak_depth, d.peak_depth, cells, MeanOf::cell);
+    opinion.speed = compare_maps(p.peak_speed, d.peak_speed, cells, MeanOf::covered);
+    opinion.pressure = compare_maps(p.peak_pressure, d.peak_pressure, cells, MeanOf::covered);
+    const double least = scene.spec.outputs.arrival_depth;
+    opinion.area = area_agreement(opinion.depth.particles, opinion.depth.depth_averaged, least);
+    set_medians(opinion, least);
     opinion.arrival = largest_arrival_difference(particles, depth_averaged);
     return opinion;
 }

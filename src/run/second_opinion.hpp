@@ -1,8 +1,9 @@
 #pragma once
 
-#include <string>
+#include <cmath>
 
 #include "core/grid.hpp"
+#include "observe/peaks.hpp"
 #include "run/run_result.hpp"
 #include "scene/scene.hpp"
 
@@ -30,14 +31,25 @@ struct LargestDifference {
     [[nodiscard]] double size() const { return depth_averaged - particles; }
 };
 
-struct SecondOpinion {
-    /// Peak depths of both on the same cells, the larger of the two models', by the mean over each; NaN: not reached.
-    Grid<float> particles, depth_averaged;
-    Grid<float> difference;  ///< m, depth-averaged less particles, debris that is not there counting as 0; NaN: neither
-    AreaAgreement area;      ///< first: particles; deeper than outputs.arrival_depth
-    LargestDifference depth;    ///< m
-    LargestDifference arrival;  ///< s, of the front along the flow path
+/// A map of both models, SI. NaN: not reached.
+struct MapPair {
+    observe::Peak peak_particles, peak_depth_averaged;  ///< on the cells of each
+    Grid<float> particles, depth_averaged;              ///< means over the same cells, the larger of the two models'
+    Grid<float> difference;     ///< depth-averaged less particles, debris that is not there counting as 0; NaN: neither
+    LargestDifference largest;  ///< on these cells
+    double median_particles = observe::never,
+           median_depth_averaged = observe::never;  ///< of the ground that both cover
 };
+
+struct SecondOpinion {
+    MapPair depth, speed, pressure;  ///< peaks: m, m/s, and the dynamic pressure, Pa
+    AreaAgreement area;              ///< first: particles; deeper than outputs.arrival_depth
+    LargestDifference arrival;       ///< s, of the front along the flow path
+};
+
+/// Where runs follow their debris, takes one path for both, so that chainages are the same places: that of the run
+/// that went farther, which cuts the front of neither. Call it before second_opinion().
+void take_one_path(scene::Scene& scene, RunResult& particles, scene::Scene& grid_scene, RunResult& depth_averaged);
 
 /// Compares complete or partial runs of the same scene.
 [[nodiscard]] SecondOpinion second_opinion(const scene::Scene& scene, const RunResult& particles,

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "core/result.hpp"
+#include "observe/peaks.hpp"
 #include "run/run_scene.hpp"
 #include "scene/scene.hpp"
 
@@ -25,6 +26,7 @@ struct VariantRun {
     Variant variant;
     std::optional<RunResult> result;  ///< of a complete run, without maps and time series
     std::string missing;              ///< "interrupted at t = 3.2 s", an error; empty where there is a result
+    observe::Peaks peaks{};           ///< of its maps
 };
 
 /// Where the base comes from, to load it again with other values.

@@ -131,6 +131,7 @@ Result<ZoomedScene> zoom_in(const scene::Scene& scene, const RunOptions& options
     record.grid_cell = run.grid_cell;
     record.simulated_time = run.simulated_time;
     record.wall_time = run.wall_time;
+    record.energy = run.observation.energy;
     record.volumes = volumes;
     record.discharge = flow->discharge();
 

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "core/geometry.hpp"
+#include "observe/observation.hpp"
 #include "run/boundary_flow.hpp"
 
 namespace talus::run {
@@ -19,6 +20,7 @@ struct ZoomRecord {
     double thickness = 0;                              ///< m, greatest normal to the slope, of what came in
     double grid_cell = 0;                              ///< m, of the depth-averaged model
     double simulated_time = 0, wall_time = 0;          ///< s, of its run
+    observe::Energy energy;                            ///< of that run
     BoundaryFlow::Volumes volumes;                     ///< in the depth-averaged model
     std::size_t pieces = 0;                            ///< of the boundary that debris came through
     double brought_volume = 0;                         ///< m3, of the particles

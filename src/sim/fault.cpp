@@ -9,7 +9,7 @@ namespace talus::sim {
 
 double speed_bound(const Model& model, double highest_energy_head) {
     const double fall = std::max(0.0, highest_energy_head) + model.particle_spacing;
-    return 1.5 * std::sqrt(2 * model.gravity * fall) + 1;
+    return speed_margin * std::sqrt(2 * model.gravity * fall) + 1;
 }
 
 Status find_fault(const Model& model, const StateSummary& state, double highest_energy_head) {

@@ -6,8 +6,11 @@
 
 namespace talus::sim {
 
+/// Of speeds over free fall: pressure can transfer energy from the tail to the front.
+inline constexpr double speed_margin = 1.5;
+
 /// The speed, m/s, above which a particle has more energy than a fall from the highest debris to the lowest ground
-/// (local z = 0) explains. Pressure can transfer energy from the tail to the front, hence the margin of 50 %.
+/// (local z = 0) explains, with its margin.
 [[nodiscard]] double speed_bound(const Model& model, double highest_energy_head);
 
 /// Why the last step cannot be trusted, with the time and the parameter to change; success if it can.

@@ -160,7 +160,7 @@ void Simulation::inject_inflow(StepWatcher* watcher) {
     const std::uint32_t first = state_.seeded;
     inflow_.inject(model_, ground_, state_);
     follow_change();
-    if (watcher != nullptr) watcher->follow_inflow(state_, first);
+    if (watcher != nullptr) watcher->follow_inflow(model_, ground_, state_, first);
 }
 
 void Simulation::follow_gauge(std::size_t inflow, const std::vector<params::InflowSample>& hydrograph) {

@@ -24,7 +24,8 @@ class StepWatcher {
     virtual ~StepWatcher() = default;
 
     /// Called when inflow has added the particles with ids from `first_new_id`.
-    virtual void follow_inflow(const State& state, std::uint32_t first_new_id) = 0;
+    virtual void follow_inflow(const Model& model, const Ground& ground, const State& state,
+                               std::uint32_t first_new_id) = 0;
     /// Called after every step.
     virtual void observe(const Model& model, const Ground& ground, const State& state) = 0;
     /// Called in its place where a device has the particles. False: nothing was measured, and observe() is called.

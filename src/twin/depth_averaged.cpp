@@ -15,6 +15,7 @@
 #include "core/number_or_null.hpp"
 #include "core/try.hpp"
 #include "run/run_scene.hpp"
+#include "run/verdict.hpp"
 #include "scene/grid_cell.hpp"
 #include "twin/json_keys.hpp"
 
@@ -94,6 +95,7 @@ json DepthAveragedRun::to_json() const {
     return {{"end_s", result.simulated_time},
             {"complete", result.status == run::RunStatus::complete},
             {"stop_reason", result.stop_reason},
+            {"verdict", json(verdict_json(judge(result)))},
             {"wall_time_s", result.wall_time},
             {"processor_time_s", processor_time},
             {"grid_cell_m", result.grid_cell},

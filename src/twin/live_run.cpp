@@ -43,6 +43,19 @@ bool LiveRun::too_compressed() const {
     return sim::too_compressed(summary());
 }
 
+const run::RunVerdict& LiveRun::verdict() const {
+    const auto begun = std::chrono::steady_clock::now();
+    const bool ended = phase() != judged_.phase;
+    const bool changed = judged_.verdict.checks.empty() || judged_.step != summary().step || ended;
+    if (!changed || (begun < judged_.next && !ended)) return judged_.verdict;
+    judged_.verdict = run_->verdict();
+    judged_.step = summary().step;
+    judged_.phase = phase();
+    const auto taken = std::chrono::steady_clock::now() - begun;
+    judged_.next = begun + std::max<std::chrono::steady_clock::duration>(std::chrono::seconds(1), 100 * taken);
+    return judged_.verdict;
+}
+
 FramePtr LiveRun::frame(unsigned stride, unsigned flags) const {
     auto frame = std::make_shared<Frame>(make_frame(state(), observer().maps().present(), slots_, stride,
                                                     flags | (too_compressed() ? frame_too_compressed : 0)));

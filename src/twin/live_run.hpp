@@ -58,6 +58,9 @@ class LiveRun {
     [[nodiscard]] const observe::Observer& observer() const { return run_->observer(); }
     [[nodiscard]] const Recording& recording() const { return recording_; }
     [[nodiscard]] bool too_compressed() const;
+    /// As Run::verdict(), of a moment ago while the run goes on: looking takes at most a hundredth of the time.
+    [[nodiscard]] const run::RunVerdict& verdict() const;
+    [[nodiscard]] run::RunVerdict verdict_now() const { return run_->verdict(); }
     /// s, when the run is expected to be over; nothing before the first step, and while debris outlasts the estimate.
     [[nodiscard]] std::optional<double> expected_end() const;
     /// s of wall time until then, as fast as the run goes; nothing likewise.
@@ -128,6 +131,13 @@ class LiveRun {
     Recording recording_;
     run::RunClock clock_;
     double deposited_speed_;
+    struct Judged {
+        run::RunVerdict verdict;
+        std::uint64_t step = 0;
+        run::RunPhase phase = run::RunPhase::ready;
+        std::chrono::steady_clock::time_point next{};  ///< when another look is cheap enough
+    };
+    mutable Judged judged_;
     std::chrono::steady_clock::time_point stepped_at_ = std::chrono::steady_clock::now();
     double going_ = 0;  ///< s of wall time, pauses left out
     ImpactHistory impact_history_;

@@ -109,6 +109,8 @@ class Scenario {
     [[nodiscard]] nlohmann::json scene_json() const;
     /// `with_hash`: it takes milliseconds with many particles.
     [[nodiscard]] nlohmann::json state_json(bool with_hash = true) const;
+    /// Of the run as it is now; that of state_json() may be of a moment ago.
+    [[nodiscard]] nlohmann::json verdict_json() const;
     [[nodiscard]] nlohmann::json setup_json() const;
     [[nodiscard]] nlohmann::json series_json() const;
     /// Without a time, s: now; otherwise at the recorded frame at or before it.

@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "core/number_or_null.hpp"
+#include "observe/peaks.hpp"
 #include "report/number_text.hpp"
 #include "run/second_opinion.hpp"
 #include "twin/depth_averaged.hpp"
@@ -91,6 +92,17 @@ json compared(const scene::Scene& scene, const run::RunResult& particles, const 
     rows.add("run_out", "Run-out along the flow", "m", 0, [](const auto& o) { return o.run_out.along_flow; });
     rows.add("affected_area", "Affected area", "m2", 0, now.both + now.only_first, now.both + now.only_second,
              at_end.both + at_end.only_second);
+    // Maps of peaks are of whole runs.
+    const observe::Peaks seen = measure_peaks(particles.observation.maps),
+                         at_last = measure_peaks(whole.observation.maps);
+    const auto peak = [&](const char* key, const char* name, const char* unit, int decimals,
+                          observe::Peak observe::Peaks::*member, double scale = 1) {
+        const double value = scale * (at_last.*member).value;
+        rows.add(key, name, unit, decimals, scale * (seen.*member).value, over ? value : observe::never, value);
+    };
+    peak("peak_depth", "Peak depth", "m", 1, &observe::Peaks::depth);
+    peak("peak_speed", "Peak speed", "m/s", 1, &observe::Peaks::speed);
+    peak("peak_pressure", "Peak dynamic pressure", "kPa", 0, &observe::Peaks::pressure, 1e-3);
     return {{"time_s", particles.simulated_time},
             {"over", over},
             {"rows", rows.take()},

@@ -10,6 +10,7 @@
 #include "core/number_or_null.hpp"
 #include "geo/latitude.hpp"
 #include "report/intensity.hpp"
+#include "run/verdict.hpp"
 #include "scene/viscosity_limit.hpp"
 #include "twin/gauges_json.hpp"
 #include "twin/json_keys.hpp"
@@ -236,6 +237,7 @@ json Scenario::state_json(bool with_hash) const {
                    {"max_compression", number_or_null<json>(state.max_compression)},
                    {"squeezed_share", number_or_null<json>(state.squeezed_share)},
                    {"too_compressed", state.step == 0 ? json() : json(run.too_compressed())},
+                   {"verdict", state.step == 0 ? json() : json(run::verdict_json(run.verdict()))},
                    {"recording",
                     {{"first_s", frames.empty() ? json() : json(frames.front()->time)},
                      {"last_s", frames.empty() ? json() : json(frames.back()->time)},
@@ -243,6 +245,10 @@ json Scenario::state_json(bool with_hash) const {
                      {"bytes", run.recording().bytes()}}}};
     if (with_hash) answer["hash"] = to_hex(hash());
     return with_short_numbers(std::move(answer));
+}
+
+json Scenario::verdict_json() const {
+    return run::verdict_json(parts_->run->verdict_now());
 }
 
 json Scenario::series_json() const {

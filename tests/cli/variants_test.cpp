@@ -97,6 +97,8 @@ TEST(Vary, RunsOncePerValueOneAtATime) {
     EXPECT_EQ(variants.at(0).at("name"), "material.friction_coefficient = 0.1");
     EXPECT_GT(variants.at(0).at("values").at("run_out").at("value_m"),
               variants.at(1).at("values").at("run_out").at("value_m"));
+    EXPECT_GT(variants.at(0).at("values").at("peak_speed").at("value_mps"),
+              variants.at(1).at("values").at("peak_speed").at("value_mps"));
     EXPECT_NEAR(variants.at(2).at("particles").get<double>() / last_event(outcome).at("particles").get<double>(), 2,
                 0.2);
     EXPECT_TRUE(fs::exists(scene.folder() / "result/variants.csv"));
@@ -243,9 +245,10 @@ TEST(Compression, IsReportedWithItsLimitsAndSaidWhenAboveThem) {
                                         "--set", "solver.end_time_s=3"};
     const auto said = run_program(poor, {.folder = scene.folder()});
     ASSERT_EQ(said.exit_code, 0) << said.error;
-    EXPECT_THAT(said.out, ContainsRegex("NOT CONVERGED +debris too compressed during .* % of the simulated time; raise "
+    EXPECT_THAT(said.out, ContainsRegex("VERDICT +beyond .*compression"));
+    EXPECT_THAT(said.out, ContainsRegex("  debris too compressed during .* % of the simulated time; raise "
                                         "solver.extra_iteration_count \\(now 0\\) or lower solver.time_step_s"));
-    EXPECT_THAT(read_text(scene.folder() / "poor/report.html"), HasSubstr("<b>Not converged: debris too compressed"));
+    EXPECT_THAT(read_text(scene.folder() / "poor/report.html"), HasSubstr("</b> debris too compressed during"));
     EXPECT_THAT(read_text(scene.folder() / "poor/manifest.json"), HasSubstr("\"within_limits\": false"));
 }
 

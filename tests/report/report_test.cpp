@@ -124,26 +124,30 @@ std::string words_of(const std::string& html) {
     return text;
 }
 
-TEST(Report, HasOneVerdictOnTheNumerics) {
+TEST(Report, HasOneVerdictBesideItsKeyFigures) {
     Sample s;
     const std::string good = s.html();
-    EXPECT_FALSE(has(good, "class=\"banner unconverged\""));
-    EXPECT_FALSE(has(good, "NOT CONVERGED"));
-    EXPECT_TRUE(has(words_of(good), "convergence not tested; talus run --convergence"));
+    EXPECT_TRUE(has(good, "<span class=\"status complete\">complete</span>"));
+    EXPECT_TRUE(has(good, "<dl class=\"verdict-box\">"));
+    EXPECT_FALSE(has(good, "BEYOND"));
+    EXPECT_TRUE(has(words_of(good), "Convergence. not tested; talus run --convergence"));
     observe::Compression& c = s.result.observation.compression;
     c.worst_squeezed_share = 0.031;
     c.worst_squeezed_time = 12.3;
     c.time_share_above = 0.25;
     const std::string html = s.html();
-    EXPECT_TRUE(has(html, "class=\"banner unconverged\""));
-    EXPECT_TRUE(has(html, "NOT CONVERGED")) << "on the maps";
-    for (const char* part : {"Not converged: debris too compressed during 25 % of the simulated time.",
+    EXPECT_TRUE(has(html, "BEYOND ITS LIMIT: COMPRESSION")) << "on the maps";
+    const std::size_t verdict = html.find("<dl class=\"verdict-box beyond\">");
+    ASSERT_NE(verdict, std::string::npos);
+    EXPECT_LT(html.find("<h2>Key results"), verdict);
+    EXPECT_LT(verdict, html.find("<dl class=\"cards\">"));
+    for (const char* part : {"<span class=\"status beyond\">complete, beyond its limit: compression</span>",
+                             "<dd class=\"beyond\"><b>Compression.</b> debris too compressed during 25 % of the "
+                             "simulated time</dd>",
                              "by more than 3&nbsp;% in up to 3.1&nbsp;% of the particles (at 12.3 s; limit 1&nbsp;%)",
                              "<code>solver.extra_iteration_count</code> (now 12)", "solver.displacement_limit"}) {
         EXPECT_TRUE(has(html, part)) << part;
     }
-    EXPECT_FALSE(has(html, ">Converged"));
-    EXPECT_FALSE(has(html, "onvergence not tested"));
     s.scene.spec.solver.time_step = 0.01;
     EXPECT_TRUE(has(s.html(), "lower <code>solver.time_step_s</code>"));
 }

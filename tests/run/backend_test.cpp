@@ -62,8 +62,9 @@ class OnCopies : public sim::StepWatcher {
     void observe(const sim::Model& model, const sim::Ground& ground, const sim::State& state) override {
         observer_.observe(model, ground, state);
     }
-    void follow_inflow(const sim::State& state, std::uint32_t first_new_id) override {
-        observer_.follow_inflow(state, first_new_id);
+    void follow_inflow(const sim::Model& model, const sim::Ground& ground, const sim::State& state,
+                       std::uint32_t first_new_id) override {
+        observer_.follow_inflow(model, ground, state, first_new_id);
     }
     [[nodiscard]] const std::vector<std::size_t>& failed_buildings() const override {
         return observer_.failed_buildings();

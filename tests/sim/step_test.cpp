@@ -29,7 +29,7 @@ TEST(Step, docs_tour_has_the_table_of_its_stages) {
 /// Notes what a step tells it, and brings one building down.
 class Notebook : public StepWatcher {
   public:
-    void follow_inflow(const State& state, std::uint32_t first_new_id) override {
+    void follow_inflow(const Model&, const Ground&, const State& state, std::uint32_t first_new_id) override {
         came_in += state.seeded - first_new_id;
         EXPECT_EQ(observed, state.step) << "inflow comes before the step is observed";
     }

@@ -118,8 +118,18 @@ TEST(DepthAveragedBeside, compares_both_by_the_same_time_and_as_a_whole) {
     EXPECT_GT(by_then, 0.3);
     EXPECT_LE(by_then, 1);
 
+    for (const char* peak : {"peak_depth", "peak_speed", "peak_pressure"}) {
+        EXPECT_TRUE(row(half, peak)["depth_averaged_by_then"].is_null()) << peak << " is known of the whole run only";
+        EXPECT_GT(row(half, peak)["depth_averaged"], 0) << peak;
+    }
+
     run_until(*scenario, 1000);
     const json whole = scenario->compared_with(run)();
+    const double speed = row(whole, "peak_speed")["particles"];
+    EXPECT_GT(speed, 1);
+    EXPECT_GE(speed, row(half, "peak_speed")["particles"]);
+    EXPECT_NEAR(row(whole, "peak_pressure")["particles"], 2 * speed * speed, 1e-3 * speed * speed) << "2000 kg/m3";
+    EXPECT_EQ(row(whole, "peak_depth")["depth_averaged_by_then"], row(whole, "peak_depth")["depth_averaged"]);
     EXPECT_EQ(whole["over"], true);
     EXPECT_EQ(row(whole, "affected_area")["depth_averaged_by_then"], row(whole, "affected_area")["depth_averaged"]);
     EXPECT_EQ(row(whole, "affected_area")["depth_averaged"], row(half, "affected_area")["depth_averaged"]);

@@ -5,11 +5,12 @@
   const maps = document.querySelector(".maps");
   const figures = [...maps.querySelectorAll("figure")];
   const tabs = document.querySelector(".tabs");
+  const buttons = [];
   const readOut = document.querySelector(".read-out");
 
   function show(id) {
     for (const figure of figures) figure.classList.toggle("shown", figure.dataset.layer === id);
-    for (const button of tabs.children) {
+    for (const button of buttons) {
       const selected = button.dataset.layer === id;
       button.setAttribute("aria-selected", String(selected));
       button.tabIndex = selected ? 0 : -1;
@@ -20,15 +21,36 @@
     button.type = "button";
     button.setAttribute("role", "tab");
     button.dataset.layer = figure.dataset.layer;
-    button.textContent = figure.dataset.name;
     button.addEventListener("click", () => show(figure.dataset.layer));
-    tabs.append(button);
+    buttons.push(button);
+    const { name, group } = figure.dataset;
+    button.textContent = group ? name.slice(group.length + 2) : name; // "Peak depth, particles"
+    place(button, name, group);
+  }
+  // Tabs of maps that belong together stand behind the name that they share.
+  function place(button, name, group) {
+    let together = tabs;
+    if (group) {
+      button.setAttribute("aria-label", name);
+      tabs.classList.add("grouped");
+      together = tabs.lastElementChild;
+      if (together?.dataset.group !== group) {
+        together = document.createElement("div");
+        together.className = "tab-group";
+        together.dataset.group = group;
+        const label = document.createElement("span");
+        label.textContent = group;
+        together.append(label);
+        tabs.append(together);
+      }
+    }
+    together.append(button);
   }
   tabs.addEventListener("keydown", (event) => {
     const step = { ArrowRight: 1, ArrowLeft: -1 }[event.key];
     if (!step) return;
-    const at = [...tabs.children].findIndex((b) => b.getAttribute("aria-selected") === "true");
-    const next = tabs.children[(at + step + tabs.children.length) % tabs.children.length];
+    const at = buttons.findIndex((b) => b.getAttribute("aria-selected") === "true");
+    const next = buttons[(at + step + buttons.length) % buttons.length];
     show(next.dataset.layer);
     next.focus();
   });

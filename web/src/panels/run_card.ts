@@ -20,6 +20,8 @@ export function runCard(twin: Twin): HTMLElement {
   const real = cell("Real time", "Simulated seconds per second");
   const message = h("p", { class: "run-message", role: "alert" });
   const light = h("div", { class: "compression", role: "status" });
+  const verdict = h("details", { class: "verdict" });
+  let shown = "", beyond = false;
   watchAll(watched(twin), () => {
     const s = twin.shownState();
     const live = twin.replay_s.value === null;
@@ -41,9 +43,21 @@ export function runCard(twin: Twin): HTMLElement {
     const text = `${squeezed ? "Debris too compressed" : "Compression within limits"}${live || twin.replay_s.value === null ? "" : ` at ${fixed(twin.replay_s.value, 1)} s`}`;
     if (light.textContent !== text) light.textContent = text;
     light.title = s ? `Compression: mean ${fixed(100 * s.mean_compression, 2)} %, above 3 % in ${fixed(100 * s.squeezed_share, 1)} % of the particles; limits 1 % and 1 %` : "";
+    // Of the run so far: a recording does not keep it.
+    const judged = live ? s?.verdict ?? null : null;
+    verdict.hidden = judged === null;
+    const now = JSON.stringify(judged);
+    if (judged && now !== shown) {
+      shown = now;
+      verdict.classList.toggle("beyond", !judged.within_limits);
+      verdict.replaceChildren(h("summary", {}, judged.within_limits ? "Run within its limits" : `Run ${judged.text}`),
+        h("ul", {}, ...judged.checks.map((check) => h("li", { class: check.state }, h("b", {}, `${check.name}. `), check.text))));
+      if (!judged.within_limits && !beyond) verdict.open = true;
+      beyond = !judged.within_limits;
+    }
   });
   return h("section", { class: "run-card", "aria-label": "State of the run" },
-    h("dl", {}, front.element, fastest.element, chainage.element, particles.element, steps.element, real.element), light, message);
+    h("dl", {}, front.element, fastest.element, chainage.element, particles.element, steps.element, real.element), light, verdict, message);
 }
 
 export function balance(twin: Twin): HTMLElement {

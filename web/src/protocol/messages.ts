@@ -66,6 +66,14 @@ export interface SceneInfo {
 }
 
 export type Status = "paused" | "running" | "at_rest" | "ended" | "fault";
+/** Whether the results of a run can be relied on: its numbers against their limits. */
+export interface Verdict {
+  within_limits: boolean;
+  text: string;
+  /** A sentence for each check beyond its limit. */
+  warnings: string[];
+  checks: { key: string; name: string; state: "within" | "beyond" | "not_measured"; value: number | null; limit: number | null; unit: string; text: string }[];
+}
 export interface State {
   scenario: ScenarioName;
   status: Status;
@@ -93,6 +101,8 @@ export interface State {
   max_compression: number;
   squeezed_share: number;
   too_compressed: boolean | null;
+  /** Of a moment ago while the run goes on; null before the first step. */
+  verdict: Verdict | null;
   /** A change that is being prepared, and the share of it that is done. */
   preparing: { what: string; share: number } | null;
   recording: { first_s: number; last_s: number; frames: number; bytes: number };
@@ -292,6 +302,7 @@ export interface DepthAveragedResult {
   end_s: number;
   complete: boolean;
   stop_reason: string;
+  verdict: Verdict;
   wall_time_s: number;
   processor_time_s: number;
   grid_cell_m: number;

@@ -21,7 +21,8 @@ export function statusText(status: DepthAveragedStatus | null): string {
       const { result } = status;
       if (!result) return "";
       const cost = `Computed in ${quantity(result.wall_time_s, "s", 2)} on cells of ${tick(result.grid_cell_m)}\u202fm`;
-      return result.complete ? `${cost}: ${fixed(result.end_s, 0)} s of the present setup.` : `${cost}; not complete: ${result.stop_reason}.`;
+      const came = result.complete ? `${cost}: ${fixed(result.end_s, 0)} s of the present setup.` : `${cost}; not complete: ${result.stop_reason}.`;
+      return result.verdict.within_limits ? came : `${came} Beyond limits. ${result.verdict.warnings.join(". ")}.`;
     }
   }
 }

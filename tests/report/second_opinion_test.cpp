@@ -1,0 +1,181 @@
+#include "report/second_opinion.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "report_fixture.hpp"
+
+namespace talus::test {
+namespace {
+
+using testing::AllOf;
+using testing::HasSubstr;
+using testing::Not;
+using testing::StartsWith;
+
+void scale(Grid<float>& map, float by) {
+    for (float& value : map.values) value *= by;
+}
+
+/// The sample twice: the second is the depth-averaged model's, to be changed before it is compared.
+struct TwoModels {
+    scene::Scene scene = sample_scene();
+    run::RunResult particles = sample_result(scene), grid = particles;
+
+    TwoModels() {
+        grid.grid_cell = 1;
+        observe::HazardMaps& maps = grid.observation.maps;
+        maps.arrival_speed = particles.observation.maps.arrival_speed = maps.peak_speed;
+    }
+    [[nodiscard]] run::SecondOpinion opinion() const { return second_opinion(scene, particles, grid); }
+    [[nodiscard]] report::BothModels models() const { return {scene, particles, scene, grid}; }
+    [[nodiscard]] std::vector<std::string> differences() const { return report::differences(models(), opinion()); }
+    [[nodiscard]] std::string page() const {
+        const auto page = second_opinion_report(models(), opinion(), second_opinion_results(models(), opinion()));
+        return page ? *page : "";
+    }
+};
+
+TEST(Differences, TheLargestIsNamedFirst) {
+    TwoModels two;
+    scale(two.grid.observation.maps.peak_speed, 2.65F);
+    scale(two.grid.observation.maps.peak_pressure, 2.65F * 2.65F);
+    scale(two.grid.observation.maps.peak_depth, 1.2F);
+    EXPECT_THAT(two.differences().at(0),
+                AllOf(StartsWith("Peak speed: "), HasSubstr("+165 %"), HasSubstr("Peak dynamic pressure: "),
+                      HasSubstr("+602 %"), HasSubstr("at chainage")));
+    EXPECT_THAT(two.differences().at(1), AllOf(StartsWith("Peak depth: "), HasSubstr("+20 %")));
+
+    scale(two.grid.observation.maps.peak_depth, 1 / 6.0F);
+    EXPECT_THAT(two.differences().at(0), AllOf(StartsWith("Peak depth: "), HasSubstr("−80 %")));
+}
+
+TEST(Differences, AStructureHitInOneModelOnlyStandsBeforeAllElse) {
+    TwoModels two;
+    scale(two.grid.observation.maps.peak_speed, 2.65F);
+    two.grid.observation.buildings[2].hit = false;
+    EXPECT_THAT(two.differences().at(0), AllOf(StartsWith("Of 5 structures, 2 are hit in both models"),
+                                               HasSubstr("House 12 only with particles")));
+}
+
+TEST(Differences, ASpikeOfOneCellChangesThePeakAndNotTheMedian) {
+    TwoModels two;
+    observe::HazardMaps& maps = two.grid.observation.maps;
+    *std::find_if(maps.peak_speed.values.begin(), maps.peak_speed.values.end(), [](float v) { return v > 0; }) = 120;
+    const std::string first = two.differences().at(0);
+    EXPECT_THAT(first, HasSubstr("120.0\u00a0m/s depth-averaged"));
+    EXPECT_THAT(first.substr(first.find("the median")), HasSubstr(", 0 %"));
+}
+
+TEST(Differences, AFrontAtTheEndOfTheScenesPathMayHaveGoneFarther) {
+    TwoModels two;
+    const auto run_out = [&] {
+        const auto all = two.differences();
+        const auto at = std::find_if(all.begin(), all.end(), [](const auto& s) { return s.starts_with("Run-out"); });
+        return at == all.end() ? "" : *at;
+    };
+    EXPECT_THAT(run_out(), AllOf(HasSubstr("chainage 262\u00a0m with particles"), Not(HasSubstr("path ends"))));
+    two.grid.observation.run_out.front_chainage = two.scene.flow_path.length();
+    EXPECT_THAT(run_out(), HasSubstr("which the front of the depth-averaged model reached: it may have gone farther"));
+    // The path that the debris itself made ends where that does.
+    two.scene.flow_path_origin = scene::PathOrigin::followed;
+    EXPECT_THAT(run_out(), Not(HasSubstr("path ends")));
+    two.particles.observation.run_out.toe = {SampleValley::east + 290, SampleValley::north + 190};
+    EXPECT_THAT(run_out(), HasSubstr("the farthest deposit with particles lies beside the path"));
+}
+
+TEST(Differences, TheSameTwiceHasNone) {
+    for (const std::string& sentence : TwoModels().differences()) {
+        EXPECT_THAT(sentence, AllOf(Not(HasSubstr("differ most")), Not(HasSubstr("farthest apart")))) << sentence;
+        EXPECT_EQ(sentence.find(" +"), std::string::npos) << sentence;
+    }
+}
+
+TEST(SecondOpinionPage, HasSpeedAndPressureOfBothAndTheirDifferences) {
+    TwoModels two;
+    scale(two.grid.observation.maps.peak_depth, 8);  // flows of up to 27 m
+    const std::string page = two.page();
+    for (const char* measure : {"peak_depth", "peak_speed", "peak_pressure"}) {
+        for (const char* of : {"particles", "depth_averaged", "difference"}) {
+            EXPECT_THAT(page, HasSubstr(fmt::format("data-layer=\"{}_{}\"", measure, of)));
+        }
+    }
+    EXPECT_EQ(page.find("{{"), std::string::npos);
+    const auto rows = second_opinion_results(two.models(), two.opinion())["quantities"]["rows"];
+    const auto row =
+        std::find_if(rows.begin(), rows.end(), [](const auto& r) { return r["quantity"] == "Peak dynamic pressure"; });
+    ASSERT_NE(row, rows.end());
+    EXPECT_NEAR((*row)["difference_percent"].template get<double>(), 0, 1e-9);
+    EXPECT_NEAR((*row)["particles"]["value"].template get<double>(),
+                report::greatest(two.particles.observation.maps.peak_pressure) / 1e3, 1e-6);
+}
+
+TEST(SecondOpinionPage, WarningsOfEitherRunStandOnIt) {
+    TwoModels two;
+    EXPECT_EQ(two.page().find("verdict-box beyond"), std::string::npos);
+    two.grid.observation.energy.speed = 131;
+    two.grid.observation.energy.share = 4;
+    two.grid.observation.energy.cells = 10;
+    two.particles.observation.thickness.median = 0.5 * two.particles.particle_spacing;
+    const std::string page = two.page();
+    EXPECT_THAT(page, HasSubstr("faster than its fall explains"));
+    EXPECT_THAT(page, HasSubstr("particles thick in the median of its trail, fewer than 2"));
+    EXPECT_EQ(page.find("status complete"), std::string::npos) << "not in green";
+}
+
+TEST(SecondOpinionPage, TheScaleOfADifferenceFollowsTheData) {
+    const auto limits = [](float factor) {
+        TwoModels two;
+        scale(two.grid.observation.maps.peak_depth, factor);
+        const std::string page = two.page();
+        const std::size_t map = page.find("data-layer=\"peak_depth_difference\"");
+        const std::size_t from = page.find(">over ", map) + 6;
+        return page.substr(from, page.find('<', from) - from);
+    };
+    EXPECT_EQ(limits(1.1F), "0.5");
+    EXPECT_EQ(limits(8), "20");
+}
+
+TEST(DifferenceClasses, AreAsWideBelowAsAboveAndGreyAroundNone) {
+    const report::Classes classes = report::difference_classes(12);
+    EXPECT_DOUBLE_EQ(classes.breaks.back(), 20);
+    EXPECT_DOUBLE_EQ(classes.breaks[1], -20);
+    ASSERT_EQ(classes.colours.size(), classes.breaks.size());
+    EXPECT_EQ(classes.of(-1e9), 0);
+    EXPECT_EQ(classes.of(0), 4);
+    EXPECT_EQ(classes.of(1.9), 4);
+    EXPECT_EQ(classes.of(-1.9), 4);
+    EXPECT_EQ(classes.of(25), 8);
+    const report::Colour grey = classes.colours[4];
+    EXPECT_TRUE(grey.red == grey.green && grey.green == grey.blue);
+    for (const auto& [usual, outer] : {std::pair{1.0, 1.0}, {0.04, 0.05}, {350, 500}, {0, 1}}) {
+        EXPECT_DOUBLE_EQ(report::difference_classes(usual).breaks.back(), outer) << usual;
+    }
+}
+
+// TEMP
+TEST(TempDump, page) {
+    TwoModels two;
+    two.scene.notes.push_back("x");
+    observe::HazardMaps& maps = two.grid.observation.maps;
+    for (int r = 0; r < maps.peak_depth.geometry.rows; ++r)
+        for (int c = 0; c < maps.peak_depth.geometry.columns; ++c) {
+            const float f = 1.0F + 0.9F * std::sin(c / 20.0F) * std::cos(r / 17.0F);
+            maps.peak_depth.at(c, r) *= f * 3;
+            maps.peak_speed.at(c, r) *= f;
+            maps.peak_pressure.at(c, r) *= f * f;
+        }
+    two.grid.observation.buildings[2].hit = false;
+    two.grid.observation.buildings[0].peak_impact_pressure *= 1.8;
+    FILE* f = fopen("/tmp/cmp/fixture.html", "w");
+    const std::string page = two.page();
+    fwrite(page.data(), 1, page.size(), f);
+    fclose(f);
+}
+}  // namespace
+}  // namespace talus::test
