@@ -112,6 +112,7 @@ RunResult followed_to(double end) {
     o.followed_path = terrain::FlowPath({{10, 10}, {end, 10}}, 40);
     o.run_out.front_chainage = end - 10;
     o.timeseries.resize(1);
+    o.timeseries[0].time = 1000;
     o.timeseries[0].front_chainage = end - 10;
     return result;
 }
@@ -130,7 +131,7 @@ TEST(TakeOnePath, TheFrontOfNeitherModelEndsWithThePathOfTheOther) {
         const observe::Observation& other = (particles_farther ? grid : particles).observation;
         EXPECT_NEAR(farther.run_out.front_chainage, 268, 1.5);
         EXPECT_NEAR(other.run_out.front_chainage, 228, 2.5);
-        EXPECT_DOUBLE_EQ(other.timeseries[0].front_chainage, 228);
+        EXPECT_NEAR(other.timeseries[0].front_chainage, 228, 2.5);
         EXPECT_DOUBLE_EQ(other.followed_path->length(), 268);
         EXPECT_NEAR(front_at(other, 150).arrival_time, (150 + 10 - 20) / 5.0, 0.5);
     }
