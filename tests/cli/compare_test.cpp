@@ -44,8 +44,8 @@ TEST(Compare, RunsBothModelsOfTheBuiltInSceneAndSaysWhereTheyPart) {
     EXPECT_GE(results.at("differences").size(), 4U);
     const std::string page = read_text(folder.path() / "both/report.html");
     EXPECT_THAT(outcome.out, HasSubstr("Peak speed: "));
-    for (const char* part : {"data-layer=\"peak_speed_difference\"", "data-layer=\"affected_area\"", "Where the models differ",
-                             "What each model leaves out", "intersection over union"}) {
+    for (const char* part : {"data-layer=\"peak_speed_difference\"", "data-layer=\"affected_area\"",
+                             "Where the models differ", "What each model leaves out", "intersection over union"}) {
         EXPECT_TRUE(page.find(part) != std::string::npos) << part;
     }
     EXPECT_EQ(page.find("{{"), std::string::npos);

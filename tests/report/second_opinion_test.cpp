@@ -1,8 +1,6 @@
 #include "report/second_opinion.hpp"
 
 #include <algorithm>
-#include <cmath>
-#include <cstdio>
 
 #include <fmt/format.h>
 #include <gmock/gmock.h>
@@ -158,24 +156,5 @@ TEST(DifferenceClasses, AreAsWideBelowAsAboveAndGreyAroundNone) {
     }
 }
 
-// TEMP
-TEST(TempDump, page) {
-    TwoModels two;
-    two.scene.notes.push_back("x");
-    observe::HazardMaps& maps = two.grid.observation.maps;
-    for (int r = 0; r < maps.peak_depth.geometry.rows; ++r)
-        for (int c = 0; c < maps.peak_depth.geometry.columns; ++c) {
-            const float f = 1.0F + 0.9F * std::sin(c / 20.0F) * std::cos(r / 17.0F);
-            maps.peak_depth.at(c, r) *= f * 3;
-            maps.peak_speed.at(c, r) *= f;
-            maps.peak_pressure.at(c, r) *= f * f;
-        }
-    two.grid.observation.buildings[2].hit = false;
-    two.grid.observation.buildings[0].peak_impact_pressure *= 1.8;
-    FILE* f = fopen("/tmp/cmp/fixture.html", "w");
-    const std::string page = two.page();
-    fwrite(page.data(), 1, page.size(), f);
-    fclose(f);
-}
 }  // namespace
 }  // namespace talus::test

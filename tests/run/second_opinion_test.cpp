@@ -70,21 +70,21 @@ TEST(SecondOpinion, ComparesMapsOfDifferentCellsAndPlacesOnTheCoarserOnes) {
 
 TEST(SecondOpinion, ComparesPeaksOfSpeedOnTheCellsOfEachAndMediansOnTheGroundOfBoth) {
     const scene::Scene scene = scene_on(8, 2);
-    RunResult particles = with_depths(row_of({1, 1, 1, 1, none, none}));
-    RunResult grid = with_depths(row_of({0.05F, 1, 1, 1, 1, none}));
-    particles.observation.maps.peak_speed = row_of({30, 4, 5, 6, none, none});
-    grid.observation.maps.peak_speed = row_of({1, 8, 10, 80, 20, none});
+    RunResult particles = with_depths(row_of({1, 1, 1, 1, 1, none, none}));
+    RunResult grid = with_depths(row_of({0.05F, 0.05F, 1, 1, 1, 1, none}));
+    particles.observation.maps.peak_speed = row_of({30, 20, 4, 5, 6, none, none});
+    grid.observation.maps.peak_speed = row_of({1, 1, 8, 10, 80, 20, none});
     const MapPair speed = second_opinion(scene, particles, grid).speed;
     EXPECT_DOUBLE_EQ(speed.peak_particles.value, 30);
     EXPECT_DOUBLE_EQ(speed.peak_particles.at.x, 1);
     EXPECT_DOUBLE_EQ(speed.peak_depth_averaged.value, 80);
-    EXPECT_DOUBLE_EQ(speed.peak_depth_averaged.at.x, 7);
+    EXPECT_DOUBLE_EQ(speed.peak_depth_averaged.at.x, 9);
     // Where both are deeper than 0.1 m; the spike of one cell does not change it.
     EXPECT_DOUBLE_EQ(speed.median_particles, 5);
     EXPECT_DOUBLE_EQ(speed.median_depth_averaged, 10);
     EXPECT_DOUBLE_EQ(speed.largest.size(), 74);
-    EXPECT_FLOAT_EQ(speed.difference.values[4], 20) << "no debris is 0";
-    EXPECT_TRUE(std::isnan(speed.difference.values[5]));
+    EXPECT_FLOAT_EQ(speed.difference.values[5], 20) << "no debris is 0";
+    EXPECT_TRUE(std::isnan(speed.difference.values[6]));
 }
 
 TEST(SecondOpinion, AHalfCoveredCellKeepsTheSpeedOfItsDebrisAndTheVolumeOfItsDepth) {
