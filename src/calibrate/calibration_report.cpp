@@ -176,6 +176,7 @@ Json calibration_results(const Calibration& c, const CalibrationSummary& s, cons
                   {"partial", false},
                   {"beyond_limits", report::beyond_limits(run::judge_together({own, fast}))}}},
                 {"verdict", verdict_json(own)},
+                {"best_verdict", verdict_json(c.records[*c.result.best].verdict)},
                 {"fast_verdict", c.fast_records.empty() ? Json() : Json(verdict_json(fast))},
                 {"key_figures", key_figures_of(c, s)},
                 {"warnings", s.warnings},
@@ -200,8 +201,9 @@ std::string calibration_report(const Json& results) {
     page["report_name"] = "calibration report";
     page["masthead"] = "Back-analysis of a landslide from field observations";
     const bool both = !results["fast_verdict"].is_null();
-    page["verdicts"] = Json::array({report::named_verdict(both ? "Particles" : "", results["verdict"])});
-    if (both) page["verdicts"].push_back(report::named_verdict("Depth-averaged", results["fast_verdict"]));
+    page["verdicts"] = Json::array({report::named_verdict("Best fit", results["best_verdict"]),
+                                    report::named_verdict(both ? "All runs of particles" : "All runs", results["verdict"])});
+    if (both) page["verdicts"].push_back(report::named_verdict("All runs of the depth-averaged model", results["fast_verdict"]));
     page["has_warnings"] = !results["warnings"].empty();
     page["maps"] = nullptr;
     return render(calibration_report_files::calibration_html, page);

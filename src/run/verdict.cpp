@@ -115,7 +115,7 @@ Check still_moving(const RunResult& result) {
         return check;
     }
     const observe::TimeSample& end = result.observation.timeseries.back();
-    const double debris = end.volume_moving + end.volume_deposited;
+    const double debris = end.volume_moving + end.volume_deposited + end.volume_left;
     check.limit = still_moving_limit;
     check.value = debris > 0 ? end.volume_moving / debris : 0;
     check.state = compare_with_limit(check.value <= check.limit);
