@@ -18,8 +18,7 @@ namespace rough_ground {
 constexpr Quantity quantities[] = {
     {"apparent_friction", "1", true, Quantity::Site::none,
      "energy head z + u^2 / 2g lost per horizontal distance, averages over the mass; the law is that of point masses "
-     "that "
-     "start where the particles do"},
+     "spread evenly over the block's length"},
 };
 
 struct Wave {
@@ -134,11 +133,9 @@ Result<Measurement> compute_variant(const RoughSpec& spec, const Variant& varian
     const bool trusted = trial.advance_to(spec.time) && trial.state().outflow == 0;
     if (!trusted) outcome.notes.push_back(variant.name() + ": " + trial.problem());
     const Means after = means_of(trial.state(), gravity);
-    return Measurement{"apparent_friction",
-                       variant.name(),
-                       trusted ? after.friction_since(before) : not_computed,
+    return Measurement{"apparent_friction", variant.name(), trusted ? after.friction_since(before) : not_computed,
                        law_end.friction_since(law_start),
-                       false};
+                       variant.spacing > *std::min_element(spec.spacings.begin(), spec.spacings.end())};
 }
 
 Result<Outcome> compute(const RoughSpec& spec, const Setting& setting, const Watch& watch) {
