@@ -15,7 +15,7 @@ constexpr double slow_share = 0.01;
 
 StillMoving still_moving(const std::vector<observe::TimeSample>& timeseries, const observe::TimeSample& end) {
     StillMoving moving;
-    const double debris = end.volume_moving + end.volume_deposited;
+    const double debris = end.volume_moving + end.volume_deposited + end.volume_left;
     if (end.volume_moving > 0) {
         moving.volume = end.volume_moving;
         moving.share = end.volume_moving / debris;

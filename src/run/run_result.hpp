@@ -24,7 +24,7 @@ enum class RunStatus { complete, interrupted, fault };
 /// What was not at rest at the end of a run: faster than outputs.deposited_speed.
 struct StillMoving {
     double volume = 0;          ///< m3
-    double share = 0;           ///< of the debris on the terrain that was released
+    double share = 0;           ///< of the debris that was let go, also of what left the terrain
     double greatest_speed = 0;  ///< m/s
     /// s, since when the kinetic energy had been below a hundredth of its peak, where other programs end; NaN: it was
     /// not.

@@ -114,17 +114,16 @@ Check still_moving(const RunResult& result) {
         check.text = "not known before the run has come to its end";
         return check;
     }
-    const observe::TimeSample& end = result.observation.timeseries.back();
-    const double debris = end.volume_moving + end.volume_deposited + end.volume_left;
+    const StillMoving moving = result.still_moving();
     check.limit = still_moving_limit;
-    check.value = debris > 0 ? end.volume_moving / debris : 0;
+    check.value = moving.share;
     check.state = compare_with_limit(check.value <= check.limit);
     check.text = check.state == CheckState::within
                      ? fmt::format("{:.2g} % of the debris still moved at the end", 100 * check.value)
                      : fmt::format(
                            "{:.2g} % of the debris ({:.3g} m3) still moved at the end, t = {:.4g} s: run-out "
                            "and deposit are lower bounds",
-                           100 * check.value, end.volume_moving, end.time);
+                           100 * check.value, moving.volume, result.observation.timeseries.back().time);
     return check;
 }
 

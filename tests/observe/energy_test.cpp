@@ -8,7 +8,7 @@
 namespace talus::observe {
 namespace {
 
-constexpr double gravity = 9.80665;
+constexpr double standard_gravity = 9.80665;
 
 /// A slope from 100 m down to 0 in ten cells of 10 m, and the peak speed of each.
 struct Slope {
@@ -31,11 +31,11 @@ TimeSample row(double time, double kinetic, double potential) {
 
 TEST(Energy, of_free_fall_is_within_its_limits_and_of_more_is_not) {
     Slope slope;
-    EnergyAccount account(gravity);
-    account.bring(1000, 1000 * gravity * 96, 97, 2);  // 2 m thick on the uppermost cell
+    EnergyAccount account(standard_gravity);
+    account.bring(1000, 1000 * standard_gravity * 96, 97, 2);  // 2 m thick on the uppermost cell
     for (int column = 0; column < 10; ++column) {
         slope.maps.peak_speed.at(column, 0) =
-            static_cast<float>(std::sqrt(2 * gravity * (97 - slope.ground.at(column, 0))));
+            static_cast<float>(std::sqrt(2 * standard_gravity * (97 - slope.ground.at(column, 0))));
     }
     const Energy fall = account.measure(slope.maps, slope.ground, 0);
     EXPECT_TRUE(fall.within_limits());
@@ -51,35 +51,35 @@ TEST(Energy, of_free_fall_is_within_its_limits_and_of_more_is_not) {
     EXPECT_EQ(spike.at.x, 65);
     EXPECT_EQ(spike.speed, 60);
     EXPECT_EQ(spike.fall, 97 - 25) << "to the lowest of the neighbours";
-    EXPECT_NEAR(spike.allowed_speed, std::sqrt(2 * gravity * (72 + 2)), 1e-9);
-    EXPECT_NEAR(spike.share, 60 * 60 / (2 * gravity * 74), 1e-9);
+    EXPECT_NEAR(spike.allowed_speed, std::sqrt(2 * standard_gravity * (72 + 2)), 1e-9);
+    EXPECT_NEAR(spike.share, 60 * 60 / (2 * standard_gravity * 74), 1e-9);
 }
 
 TEST(Energy, lets_a_front_over_level_ground_run_twice_as_fast_as_its_waves) {
     Slope level;
     for (float& height : level.ground.values) height = 0;
-    EnergyAccount account(gravity);
-    account.bring(1000, 1000 * gravity * 0.5, 1, 1);
-    level.maps.peak_speed.at(9, 0) = static_cast<float>(2 * std::sqrt(gravity * 1));  // Ritter 1892
+    EnergyAccount account(standard_gravity);
+    account.bring(1000, 1000 * standard_gravity * 0.5, 1, 1);
+    level.maps.peak_speed.at(9, 0) = static_cast<float>(2 * std::sqrt(standard_gravity * 1));  // Ritter 1892
     EXPECT_NEAR(account.measure(level.maps, level.ground, 0).share, 1, 1e-6);
-    level.maps.peak_speed.at(9, 0) = static_cast<float>(2.2 * std::sqrt(gravity * 1));
+    level.maps.peak_speed.at(9, 0) = static_cast<float>(2.2 * std::sqrt(standard_gravity * 1));
     EXPECT_FALSE(account.measure(level.maps, level.ground, 0).within_limits());
 }
 
 TEST(Energy, counts_the_head_of_inflow) {
     Slope slope;
-    EnergyAccount account(gravity);
-    account.bring(1000, 1000 * gravity * 50, 50, 0);
+    EnergyAccount account(standard_gravity);
+    account.bring(1000, 1000 * standard_gravity * 50, 50, 0);
     slope.maps.peak_speed.at(8, 0) = 40;
     EXPECT_FALSE(account.measure(slope.maps, slope.ground, 0).within_limits());
-    account.bring(1000, 1000 * gravity * 130, 130, 0);  // 40 m/s at 50 m
+    account.bring(1000, 1000 * standard_gravity * 130, 130, 0);  // 40 m/s at 50 m
     EXPECT_TRUE(account.measure(slope.maps, slope.ground, 0).within_limits());
 }
 
 TEST(Energy, that_debris_gains_is_told_with_its_time) {
     Slope slope;
-    const double start = 1000 * gravity * 96;
-    EnergyAccount account(gravity);
+    const double start = 1000 * standard_gravity * 96;
+    EnergyAccount account(standard_gravity);
     account.bring(1000, start, 97, 2);
     account.add(row(0, 0, start), 1000, 2000);
     account.add(row(1, 0.3 * start, 0.6 * start), 1000, 2000);
@@ -94,11 +94,11 @@ TEST(Energy, that_debris_gains_is_told_with_its_time) {
 
 TEST(Energy, that_inflow_and_the_bed_bring_is_not_gained) {
     Slope slope;
-    const double start = 1000 * gravity * 96;
-    EnergyAccount account(gravity);
+    const double start = 1000 * standard_gravity * 96;
+    EnergyAccount account(standard_gravity);
     account.bring(1000, start, 97, 2);
     account.add(row(0, 0, start), 1000, 2000);
-    account.bring(500, 500 * gravity * 96, 97, 0);
+    account.bring(500, 500 * standard_gravity * 96, 97, 0);
     account.add(row(1, 0, 1.5 * start), 1500, 2000);
     TimeSample entrained = row(2, 0, 2 * start);
     entrained.volume_entrained = 0.25;  // 500 kg
@@ -108,8 +108,8 @@ TEST(Energy, that_inflow_and_the_bed_bring_is_not_gained) {
 
 TEST(Energy, of_a_changed_setup_begins_with_what_is_there) {
     Slope slope;
-    const double start = 1000 * gravity * 96;
-    EnergyAccount account(gravity);
+    const double start = 1000 * standard_gravity * 96;
+    EnergyAccount account(standard_gravity);
     account.bring(1000, start, 97, 2);
     account.add(row(0, 0, start), 1000, 2000);
     account.follow(row(1, 0.1 * start, 2.5 * start), 2600);
@@ -118,10 +118,10 @@ TEST(Energy, of_a_changed_setup_begins_with_what_is_there) {
 }
 
 TEST(Energy, is_not_known_where_debris_reached_nothing) {
-    EnergyAccount account(gravity);
+    EnergyAccount account(standard_gravity);
     EXPECT_FALSE(account.measure({}, {}, 0).known());
     Slope slope;
-    account.bring(1000, 1000 * gravity * 96, 97, 2);
+    account.bring(1000, 1000 * standard_gravity * 96, 97, 2);
     for (float& height : slope.ground.values) height = std::numeric_limits<float>::quiet_NaN();
     EXPECT_FALSE(account.measure(slope.maps, slope.ground, 0).known());
 }

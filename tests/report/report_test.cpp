@@ -69,13 +69,13 @@ TEST(Report, SaysWhatStillMovedAtTheEnd) {
     end.volume_deposited = 588;
     end.largest_speed = 3.21;
     EXPECT_TRUE(has(s.html(), "12 m³ (2 % of the debris), at up to 3.2 m/s"));
-    const Json moving = status(s.result)["still_moving"];
+    const Json moving = still_moving(s.result);
     EXPECT_EQ(moving["volume_m3"], 12);
     EXPECT_EQ(moving["share_percent"], 2);
     EXPECT_EQ(moving["greatest_speed_mps"], 3.21);
     end.volume_moving = 0;
     EXPECT_TRUE(has(s.html(), "nothing faster than 0.1 m/s"));
-    EXPECT_EQ(status(s.result)["still_moving"]["greatest_speed_mps"], 0);
+    EXPECT_EQ(still_moving(s.result)["greatest_speed_mps"], 0);
 }
 
 TEST(Report, ABraceInATitleIsNotTakenForATemplate) {

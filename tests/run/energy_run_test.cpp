@@ -82,9 +82,12 @@ class TooFast : public testing::Test {
             for (int column = 2; column < 6; ++column) depth.at(column, row) = 2;
         }
         solver.emplace(bed, depth::Material{});
-        observer.emplace(*solver, terrain::FlowPath{}, params::OutputSpec{}, std::vector<observe::StructureCells>{});
+        const params::OutputSpec outputs;
+        observer.emplace(*solver, terrain::FlowPath{}, outputs,
+                         observe::GridStructures(*solver, terrain::Terrain(Grid<float>(bed.geometry)), {}, {}, outputs),
+                         0);
         solver->add(depth);
-        observer->note_release(*solver, depth, solver->volume());
+        observer->note_release(*solver, depth, solver->volume(), 0);
     }
     void step() {
         ASSERT_TRUE(solver->advance(0.01));
