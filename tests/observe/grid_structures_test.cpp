@@ -99,7 +99,7 @@ TEST(GridStructures, water_at_rest_presses_with_its_weight_on_the_patch) {
 TEST(GridStructures, only_the_velocity_towards_a_wall_strikes_it) {
     const double along = struck(Flume(1), 0.5, 0, 8).peak_impact_pressure;
     const double away = struck(Flume(1), 0.5, -8, 0).peak_impact_pressure;
-    const BuildingImpact towards = struck(Flume(1), 0.5, 8, 3);
+    const BuildingImpact towards = struck(Flume(1, 8), 0.5, 8, 3);  // too high to pass
     const double weight = density * gravity * 0.5 * 0.5 / 2;
     EXPECT_NEAR(along, weight, 1e-3 * weight);
     EXPECT_NEAR(away, weight, 1e-3 * weight);

@@ -49,8 +49,8 @@ TEST(Differences, TheLargestIsNamedFirst) {
                       HasSubstr("+602 %"), HasSubstr("at chainage")));
     EXPECT_THAT(two.differences().at(1), AllOf(StartsWith("Peak depth: "), HasSubstr("+20 %")));
 
-    scale(two.grid.observation.maps.peak_depth, 1 / 6.0F);
-    EXPECT_THAT(two.differences().at(0), AllOf(StartsWith("Peak depth: "), HasSubstr("−80 %")));
+    scale(two.grid.observation.maps.peak_depth, 1 / 12.0F);
+    EXPECT_THAT(two.differences().at(0), AllOf(StartsWith("Peak depth: "), HasSubstr("−90 %")));
 }
 
 TEST(Differences, AStructureHitInOneModelOnlyStandsBeforeAllElse) {

@@ -155,7 +155,7 @@ class ZoomedRun : public scene::SceneFolder {
 
 TEST_F(ZoomedRun, brings_what_crosses_the_boundary_to_the_structure) {
     const scene::Scene scene = loaded(
-        dam(150), {"solver.end_time_s=20", "zoom.structure=dam", "zoom.margin_m=20", "zoom.particle_spacing_m=1"});
+        dam(150), {"solver.end_time_s=30", "zoom.structure=dam", "zoom.margin_m=20", "zoom.particle_spacing_m=1"});
     const auto result = run_scene(scene, {});
     ASSERT_TRUE(result) << result.error().message;
     ASSERT_TRUE(result->zoom);
