@@ -37,14 +37,13 @@ double PointMass::pressing(const ProfilePoint& ground, double speed) const {
     return gravity_ * cosine + curvature * speed * speed;
 }
 
-PointMass::Rates PointMass::rates(double x, double speed) const {
+PointMass::Rates PointMass::rates(double x, double speed, double direction) const {
     const ProfilePoint ground = profile_(x);
     const double cosine = 1 / std::hypot(1, ground.slope);
     const double drive = -gravity_ * ground.slope * cosine;
     const double resistance = friction_ * std::max(0.0, pressing(ground, speed));
-    if (speed == 0 && std::abs(drive) <= resistance) return {0, 0};
-    const double direction = speed != 0 ? speed : drive;
-    return {speed * cosine, drive - std::copysign(resistance, direction)};
+    if (direction == 0 && std::abs(drive) <= resistance) return {0, 0};
+    return {speed * cosine, drive - std::copysign(resistance, direction != 0 ? direction : drive)};
 }
 
 void PointMass::slide(double step) {
@@ -56,10 +55,10 @@ void PointMass::slide(double step) {
         flies_ = true;
         return fly(step);
     }
-    const Rates a = rates(x_, along_);
-    const Rates b = rates(x_ + a.way * step / 2, along_ + a.speed * step / 2);
-    const Rates c = rates(x_ + b.way * step / 2, along_ + b.speed * step / 2);
-    const Rates d = rates(x_ + c.way * step, along_ + c.speed * step);
+    const Rates a = rates(x_, along_, along_);
+    const Rates b = rates(x_ + a.way * step / 2, along_ + a.speed * step / 2, along_);
+    const Rates c = rates(x_ + b.way * step / 2, along_ + b.speed * step / 2, along_);
+    const Rates d = rates(x_ + c.way * step, along_ + c.speed * step, along_);
     x_ += step / 6 * (a.way + 2 * b.way + 2 * c.way + d.way);
     const double next = along_ + step / 6 * (a.speed + 2 * b.speed + 2 * c.speed + d.speed);
     // Friction stops it; it does not turn it around.

@@ -34,7 +34,8 @@ class PointMass {
         double way, speed;  ///< of x and of the speed along the ground
     };
     [[nodiscard]] double pressing(const ProfilePoint& ground, double speed) const;
-    [[nodiscard]] Rates rates(double x, double speed) const;
+    /// `direction`: of the motion that friction opposes, the sign of the speed when the step began.
+    [[nodiscard]] Rates rates(double x, double speed, double direction) const;
     void slide(double step);
     void fly(double step);
     void land();

@@ -45,8 +45,8 @@ TEST(PointMass, KeepsItsEnergyOnWavesThatItFollowsWithoutFriction) {
 }
 
 TEST(PointMass, FrictionInAHollowIncludesTheForceThatTurnsIt) {
-    // Along a circle at nearly constant speed, f kappa v^2 ds is f v^2 per radian.
-    constexpr double radius = 10, speed = 100, friction = 0.1;
+    // v falls by f v per radian; the weight takes f g / v per metre besides, 0.01 m/s, and the end is found to 0.1 m/s.
+    constexpr double radius = 10, speed = 1000, friction = 0.1;
     const Profile circle = [](double x) {
         const double height = std::sqrt(radius * radius - x * x);
         return ProfilePoint{radius - height, x / height, radius * radius / (height * height * height)};
@@ -55,7 +55,7 @@ TEST(PointMass, FrictionInAHollowIncludesTheForceThatTurnsIt) {
     PointMass mass(circle, friction, point_gravity, start, speed);
     double time = 0;
     while (mass.x() < -start) mass.advance_to(time += 1e-5);
-    EXPECT_NEAR(mass.speed(), speed * std::exp(-friction), 0.1);
+    EXPECT_NEAR(mass.speed(), speed * std::exp(-friction), 0.2);
 }
 
 TEST(PointMass, FliesOverABrowAndLosesThePartNormalToTheGroundWhereItLands) {
@@ -68,7 +68,7 @@ TEST(PointMass, FliesOverABrowAndLosesThePartNormalToTheGroundWhereItLands) {
                             -2.5 * std::numbers::pi * std::numbers::pi * std::cos(std::numbers::pi * x)};
     };
     const double friction = 0.2, speed = 10;
-    PointMass mass(ledge, friction, point_gravity, -1e-6, speed);
+    PointMass mass(ledge, friction, point_gravity, 1e-6, speed);
     mass.advance_to(0.5);
     EXPECT_TRUE(mass.flies());
     const double fall_time = std::sqrt(2 * 5 / point_gravity), blow = point_gravity * fall_time;
