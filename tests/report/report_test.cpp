@@ -68,7 +68,7 @@ TEST(Report, SaysWhatStillMovedAtTheEnd) {
     end.volume_moving = 12;
     end.volume_deposited = 588;
     end.largest_speed = 3.21;
-    EXPECT_TRUE(has(s.html(), "12 m³ (2 % of the debris), at up to 3.2 m/s"));
+    EXPECT_TRUE(has(s.html(), "12.0 m³ (2.00 % of the debris), at up to 3.2 m/s"));
     const Json moving = still_moving(s.result);
     EXPECT_EQ(moving["volume_m3"], 12);
     EXPECT_EQ(moving["share_percent"], 2);
