@@ -114,7 +114,9 @@ def run(
 
 def _run_one(job: tuple[Any, dict[str, object], float | None]) -> Result:
     scene, settings, end_time = job
-    return run(scene, settings, end_time=end_time, progress=False)
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", UserWarning)  # study() says it once
+        return run(scene, settings, end_time=end_time, progress=False)
 
 
 def study(
@@ -126,8 +128,13 @@ def study(
     processes: int | None = None,
 ) -> list[Result]:
     """Runs a scene once for every combination of `values` (a list by key), in `processes` at once (None: one per core),
-    each on one thread. Results are in the order of itertools.product; Result.settings says what each run had."""
+    each on one thread. Results are in the order of itertools.product; Result.settings says what each run had. Warns once
+    if runs are beyond a limit (Result.verdict)."""
     base = {"solver.thread_count": 1, **(settings or {})}
     jobs = [(scene, {**base, **dict(zip(values, chosen))}, end_time) for chosen in itertools.product(*values.values())]
     with ProcessPoolExecutor(processes) as pool:
-        return list(pool.map(_run_one, jobs))
+        results = list(pool.map(_run_one, jobs))
+    beyond = [warning for result in results for warning in result.verdict["warnings"][:1]]
+    if beyond:
+        warnings.warn(f"{len(beyond)} of {len(results)} runs are beyond a limit; the first: {beyond[0]}", stacklevel=2)
+    return results

@@ -186,12 +186,13 @@ class StudyTest(unittest.TestCase):
             folder = pathlib.Path(name) / "scene"
             open_slope(folder).close()
             key, count = "material.friction_coefficient", {"solver.target_particle_count": 400}
-            results = talus.study(folder / "scene.toml", {key: [0.2, 0.5]}, count, end_time=4, processes=2)
+            with self.assertWarnsRegex(UserWarning, "^2 of 2 runs are beyond a limit; the first: Resolution"):
+                results = talus.study(folder / "scene.toml", {key: [0.2, 0.5]}, count, end_time=4, processes=2)
             self.assertEqual([r.settings[key] for r in results], [0.2, 0.5])
             reached = [np.nanmax(r.front.chainage) for r in results]
             self.assertGreater(reached[0], reached[1] + 1)
             said = io.StringIO()
-            with contextlib.redirect_stderr(said):
+            with contextlib.redirect_stderr(said), self.assertWarnsRegex(UserWarning, "particles thick"):
                 alone = talus.run(folder / "scene.toml", {key: 0.2, **count}, end_time=4, progress=True)
                 talus.run(folder / "scene.toml", {"solver.end_time_s": 1.003, **count}, progress=True)  # to its own end
             lines = [line for line in said.getvalue().replace("\x1b[K", "").split("\r") if line]
