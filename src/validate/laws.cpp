@@ -118,31 +118,6 @@ double SpreadingCap::thickness(double along, double across, double time) const {
     return std::max(0.0, height_ / (shape.along * shape.across) * (1 - xi * xi - eta * eta));
 }
 
-double point_mass_speed(const std::function<double(double)>& elevation, double start, double end, double friction,
-                        double gravity) {
-    // A step of flight; where it ends below the ground, the ground takes up the velocity normal to it. On ground that
-    // the mass follows these blows add up to the normal force.
-    constexpr double time_step = 1e-4, reach = 1e-6, longest = 200;
-    double x = start, z = elevation(start), u = 0, w = 0;
-    for (double time = 0; x < end; time += time_step) {
-        if (time > longest) return std::numeric_limits<double>::quiet_NaN();
-        x += u * time_step;
-        z += (w - gravity * time_step / 2) * time_step;
-        w -= gravity * time_step;
-        const double slope = (elevation(x + reach) - elevation(x - reach)) / (2 * reach);
-        const double cosine = 1 / std::hypot(1.0, slope), sine = slope * cosine, below = (elevation(x) - z) * cosine;
-        if (below < 0) continue;
-        const double blow = std::max(0.0, u * sine - w * cosine), along = u * cosine + w * sine;
-        const double left = along > 0 ? std::max(0.0, along - friction * blow) : std::min(0.0, along + friction * blow);
-        if (left == 0) return std::numeric_limits<double>::quiet_NaN();
-        x += -below * sine;
-        z += below * cosine;
-        u = left * cosine;
-        w = left * sine;
-    }
-    return std::hypot(u, w);
-}
-
 double momentum_jump(double froude) {
     double low = 1, high = 2 + 2 * froude;  // (x - 1)(x^2 - 1) > 2 Fr^2 x there
     for (int bisection = 0; bisection < 100; ++bisection) {

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <functional>
 #include <vector>
 
 /// Exact solutions and laboratory laws that cases are compared with. SI units, angles in radians.
@@ -66,12 +65,6 @@ class SpreadingCap {
     double length_, height_, acceleration_, time_unit_, step_;
     std::vector<Shape> shapes_;
 };
-
-/// Speed, m/s, at which a point mass passes `end` that starts at rest at `start` on ground of this elevation by
-/// distance, m, with Coulomb friction: it leaves the ground where that falls away faster than it does, and where it
-/// meets the ground again keeps the part of its velocity along it. NaN: it stops before.
-[[nodiscard]] double point_mass_speed(const std::function<double(double)>& elevation, double start, double end,
-                                      double friction, double gravity);
 
 /// Thickness over that of the flow when a stream of this Froude number is reflected: the root above 1 of the momentum
 /// balance of the jump, (x - 1)(x^2 - 1) = 2 Fr^2 x.

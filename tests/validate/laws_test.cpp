@@ -45,35 +45,6 @@ TEST(SheetFlow, HasTheVelocitiesOfItsLaws) {
     EXPECT_TRUE(std::isnan(sheet.bagnold(1, 0.2, 0.5, 0.3, 0.05, 0.6))) << "it never gets steady";
 }
 
-TEST(PointMass, SlidesDownAPlaneAgainstFriction) {
-    const double drop = 0.5 * 80;
-    EXPECT_NEAR(point_mass_speed([](double x) { return -0.5 * x; }, 0, 80, 0.2, gravity),
-                std::sqrt(2 * gravity * (drop - 0.2 * 80)), 0.01);
-    EXPECT_TRUE(std::isnan(point_mass_speed([](double x) { return -0.1 * x; }, 0, 80, 0.2, gravity))) << "it stays";
-}
-
-TEST(PointMass, FeelsTheNormalForceOfAnArc) {
-    // With w = v^2 / g R at the angle b from the bottom of a bowl: dw/db = -2 sin b - 2 f (cos b + w).
-    const double radius = 50, f = 0.2, start = -60 * degrees;
-    const double b = -6 * f / (1 + 4 * f * f), a = 2 + 2 * f * b;
-    const double w = a - (a * std::cos(start) + b * std::sin(start)) * std::exp(2 * f * start);
-    const auto bowl = [&](double x) { return -std::sqrt(radius * radius - x * x); };
-    EXPECT_NEAR(point_mass_speed(bowl, radius * std::sin(start), 0, f, gravity), std::sqrt(w * gravity * radius), 0.01);
-}
-
-TEST(PointMass, LeavesADomeAndLandsWithItsHorizontalVelocity) {
-    // At two thirds of the height over the centre from which it slides without friction.
-    const double radius = 10, start = 1, height = std::sqrt(radius * radius - start * start);
-    const double leaves = height * 2 / 3, speed = std::sqrt(2 * gravity * (height - leaves));
-    const auto dome = [&](double x) { return x < 0.9 * radius ? std::sqrt(radius * radius - x * x) : -20; };
-    EXPECT_NEAR(point_mass_speed(dome, start, 30, 0, gravity), speed * leaves / radius, 0.01);
-}
-
-TEST(PointMass, KeepsItsVelocityAlongTheGroundAtAFoot) {
-    const auto corner = [](double x) { return x < 20 ? 20 - x : 0; };
-    EXPECT_NEAR(point_mass_speed(corner, 0, 30, 0, gravity), std::sqrt(2 * gravity * 20 / 2), 0.01);
-}
-
 TEST(DamBreak, IsRittersWithoutSlopeAndFriction) {
     const DamBreak dam(0, 0, 2, gravity);
     const double c = std::sqrt(gravity * 2);

@@ -12,7 +12,7 @@
 #include "scene/scene.hpp"
 #include "sim/sources/seed.hpp"
 #include "validate/kinds/kinds.hpp"
-#include "validate/laws.hpp"
+#include "validate/point_mass.hpp"
 #include "validate/set_up.hpp"
 
 namespace talus::validate {
@@ -288,6 +288,22 @@ double energy_line_front(const ProfileSpec& spec, const World& world, double fri
     return not_computed;
 }
 
+/// Of a point mass from the middle of the release, m/s, where the speed is probed; not computed where it stops before.
+double speed_of_point_mass(const ProfileSpec& spec, double friction, double gravity) {
+    constexpr double reach = 1e-3, longest = 200;  // m, s
+    const auto profile = [&](double x) {
+        const double before = spec.shape.elevation(x - reach), here = spec.shape.elevation(x);
+        const double after = spec.shape.elevation(x + reach);
+        return ProfilePoint{here, (after - before) / (2 * reach), (after - 2 * here + before) / (reach * reach)};
+    };
+    PointMass mass(profile, friction, gravity, (spec.from + spec.to) / 2, 0);
+    for (double time = 0; mass.x() < spec.probe; time += 0.01) {
+        if (time > longest) return not_computed;
+        mass.advance_to(time + 0.01);
+    }
+    return mass.speed();
+}
+
 Result<Outcome> compute(const ProfileSpec& spec, const Setting& setting, const Watch& watch) {
     TALUS_TRY(spec.shape.check());
     const double width = spec.width * spec.spacing, friction = setting.material.friction_coefficient;
@@ -296,8 +312,7 @@ Result<Outcome> compute(const ProfileSpec& spec, const Setting& setting, const W
     std::optional<double> law_front, law_speed;
     if (std::isfinite(line_front)) law_front = line_front;
     if (spec.probe > 0) {
-        law_speed = point_mass_speed([&](double x) { return spec.shape.elevation(x); }, (spec.from + spec.to) / 2,
-                                     spec.probe, friction, gravity);
+        law_speed = speed_of_point_mass(spec, friction, gravity);
     }
 
     Outcome outcome;
