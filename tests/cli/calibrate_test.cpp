@@ -66,7 +66,7 @@ TEST(Calibrate, WritesWhatItFoundAndASceneThatRunsIt) {
 TEST(Calibrate, RecoversTheFrictionOfARunOfTheDepthAveragedModel) {
     const FlowingScene scene;
     const ProgramOptions here{.folder = scene.folder()};
-    scene.replace("[solver]\n", "[solver]\nmodel = \"depth_averaged\"\ngrid_cell_m = 2.5\n");
+    scene.replace("[solver]\n", "[solver]\nmodel = \"depth_averaged\"\ngrid_cell_m = 1.25\n");
     const auto truth = run_program(
         {"run", "slope.toml", "-o", "truth", "--json", "--set", "material.friction_coefficient=0.25"}, here);
     ASSERT_EQ(truth.exit_code, 0) << truth.error;
