@@ -179,8 +179,8 @@ TALUS_API int talus_set(talus_simulation* simulation, const char* key, double va
 TALUS_API int talus_apply(talus_simulation* simulation, const char* action, const char** created, talus_error* error);
 
 /*
- * "scene", "state", "setup", "impacts" or "series" as JSON, as docs/protocol.md has them; "verdict": whether the results
- * so far can be relied on, as `verdict` of docs/results.md.
+ * "scene", "state", "setup", "impacts" or "series" as JSON, as docs/protocol.md has them; "verdict": whether the
+ * results so far can be relied on, as `verdict` of docs/results.md.
  */
 TALUS_API int talus_get_json(talus_simulation* simulation, const char* name, const char** json, talus_error* error);
 

@@ -201,9 +201,12 @@ std::string calibration_report(const Json& results) {
     page["report_name"] = "calibration report";
     page["masthead"] = "Back-analysis of a landslide from field observations";
     const bool both = !results["fast_verdict"].is_null();
-    page["verdicts"] = Json::array({report::named_verdict("Best fit", results["best_verdict"]),
-                                    report::named_verdict(both ? "All runs of particles" : "All runs", results["verdict"])});
-    if (both) page["verdicts"].push_back(report::named_verdict("All runs of the depth-averaged model", results["fast_verdict"]));
+    page["verdicts"] =
+        Json::array({report::named_verdict("Best fit", results["best_verdict"]),
+                     report::named_verdict(both ? "All runs of particles" : "All runs", results["verdict"])});
+    if (both)
+        page["verdicts"].push_back(
+            report::named_verdict("All runs of the depth-averaged model", results["fast_verdict"]));
     page["has_warnings"] = !results["warnings"].empty();
     page["maps"] = nullptr;
     return render(calibration_report_files::calibration_html, page);

@@ -54,9 +54,7 @@ std::string run_csv(const EnsembleResult& result) {
         for (const std::string& value : run.values) csv.word(value);
         for (std::size_t m = 0; m < result.measures.size(); ++m)
             csv.number(m < run.results.size() ? run.results[m] : observe::never);
-        csv.number(run.simulated_time)
-            .number(run.wall_time)
-            .number(run.particles > 0 ? run.particles : observe::never);
+        csv.number(run.simulated_time).number(run.wall_time).number(run.particles > 0 ? run.particles : observe::never);
         csv.word(run.verdict.keys()).word(run.hash).word(run.fault);
         csv.end_row();
     }

@@ -321,8 +321,9 @@ TEST_F(EnsembleTest, WritesMapsTablesAndAReport) {
     const auto page = ensemble_report(result, results);
     ASSERT_TRUE(page) << page.error().message;
     EXPECT_TRUE(*page == test::read_text(folder / "done/report.html")) << "the page shows what results.json holds";
-    for (const char* part : {"6</strong> <span class=\"unit\">of 6", "material.friction_coefficient", "Latin hypercube",
-                             "Run-out along the flow of all runs", "Share of the complete runs", "Front velocity at 20 m"}) {
+    for (const char* part :
+         {"6</strong> <span class=\"unit\">of 6", "material.friction_coefficient", "Latin hypercube",
+          "Run-out along the flow of all runs", "Share of the complete runs", "Front velocity at 20 m"}) {
         EXPECT_THAT(*page, HasSubstr(part));
     }
     EXPECT_EQ(page->find("{{"), std::string::npos);
