@@ -60,6 +60,10 @@ void Solver::add(const Grid<float>& depth, std::optional<double> pore_pressure_r
     }
 }
 
+void Solver::let_fly() {
+    for (std::vector<float>* array : {&height_, &climb_, &next_height_, &next_climb_}) array->assign(depth_.size(), 0);
+}
+
 void Solver::inject(int column, int row, double depth, double u, double v) {
     mix_in(column, row, depth, u, v, material_.pore_pressure_ratio);
 }
@@ -74,6 +78,10 @@ void Solver::mix_in(int column, int row, double depth, double u, double v, doubl
     u_[i] = next_u_[i] = mixed(u_[i], u);
     v_[i] = next_v_[i] = mixed(v_[i], v);
     spare_[i] = next_spare_[i] = mixed(spare_[i], 0);
+    if (flies()) {
+        height_[i] = next_height_[i] = mixed(height_[i], 0);
+        climb_[i] = next_climb_[i] = mixed(climb_[i], 0);
+    }
     if (carries_pore_pressure()) {
         pore_pressure_[i] = next_pore_pressure_[i] =
             mixed(pore_pressure_[i], pore_pressure_ratio / pore_pressure_left_);
@@ -187,6 +195,7 @@ double Solver::take_outflow(const Segment& segment, const Motion& motion) {
                 if (!unknown_[origin_ + i]) continue;
                 if (counts) sum += motion.depth[i];
                 motion.depth[i] = motion.u[i] = motion.v[i] = motion.spare[i] = 0;
+                if (flies()) motion.height[i] = motion.climb[i] = 0;
             }
         }
     }
@@ -194,13 +203,23 @@ double Solver::take_outflow(const Segment& segment, const Motion& motion) {
 }
 
 Motion Solver::motion() {
-    return {&depth_[origin_], &u_[origin_], &v_[origin_], &spare_[origin_],
-            carries_pore_pressure() ? &pore_pressure_[origin_] : nullptr};
+    return {&depth_[origin_],
+            &u_[origin_],
+            &v_[origin_],
+            &spare_[origin_],
+            carries_pore_pressure() ? &pore_pressure_[origin_] : nullptr,
+            flies() ? &height_[origin_] : nullptr,
+            flies() ? &climb_[origin_] : nullptr};
 }
 
 Motion Solver::next_motion() {
-    return {&next_depth_[origin_], &next_u_[origin_], &next_v_[origin_], &next_spare_[origin_],
-            carries_pore_pressure() ? &next_pore_pressure_[origin_] : nullptr};
+    return {&next_depth_[origin_],
+            &next_u_[origin_],
+            &next_v_[origin_],
+            &next_spare_[origin_],
+            carries_pore_pressure() ? &next_pore_pressure_[origin_] : nullptr,
+            flies() ? &next_height_[origin_] : nullptr,
+            flies() ? &next_climb_[origin_] : nullptr};
 }
 
 double Solver::advance_stage(bool second) {
@@ -317,6 +336,10 @@ double Solver::bytes_per_cell() const {
                                             &structure_,
                                             &pore_pressure_,
                                             &next_pore_pressure_,
+                                            &height_,
+                                            &climb_,
+                                            &next_height_,
+                                            &next_climb_,
                                             &inflow_.depth,
                                             &inflow_.momentum_x,
                                             &inflow_.momentum_y,
@@ -340,6 +363,7 @@ ActiveRow Solver::active_row(const Segment& segment, int row_of_tile) const {
     result.v = &v_[i];
     result.slope_x = &slope_x_[i];
     result.slope_y = &slope_y_[i];
+    if (flies()) result.climb = &climb_[i];
     return result;
 }
 
@@ -351,6 +375,8 @@ std::uint64_t Solver::hash() const {
     hash.add(std::span<const float>(v_));
     hash.add(std::span<const float>(spare_));
     hash.add(std::span<const float>(pore_pressure_));
+    hash.add(std::span<const float>(height_));
+    hash.add(std::span<const float>(climb_));
     return hash.value();
 }
 

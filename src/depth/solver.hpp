@@ -47,6 +47,7 @@ struct ActiveRow {
     int row = 0, first = 0, last = 0;
     const float *depth = nullptr, *u = nullptr, *v = nullptr;  ///< m, m/s
     const float *slope_x = nullptr, *slope_y = nullptr;        ///< of the ground
+    const float* climb = nullptr;                              ///< m/s, see Solver::climb_at(); null: 0
 };
 
 /// A face of the grid: east of a cell, or north of it.
@@ -70,6 +71,9 @@ class Solver {
     Solver(const Grid<double>& bed, const Material& material, const GroundValues& ground = {},
            Edges edges = Edges::open);
 
+    /// Debris leaves the ground from now on where that would have to hold it, flies and lands (docs/depth-averaged.md).
+    /// Else it follows the ground.
+    void let_fly();
     /// Adds debris at rest: m of vertical depth per cell of the grid. Unknown ground takes none. `pore_pressure_ratio`:
     /// its r_u now; absent: that of the material.
     void add(const Grid<float>& depth, std::optional<double> pore_pressure_ratio = {});
@@ -122,6 +126,11 @@ class Solver {
     [[nodiscard]] float bed_at(int column, int row) const { return bed_[index(column, row)]; }
     [[nodiscard]] float slope_x_at(int column, int row) const { return slope_x_[index(column, row)]; }
     [[nodiscard]] float slope_y_at(int column, int row) const { return slope_y_[index(column, row)]; }
+    [[nodiscard]] bool flies() const { return !height_.empty(); }
+    /// m, of flying debris above the ground; 0: on it.
+    [[nodiscard]] float height_at(int column, int row) const { return flies() ? height_[index(column, row)] : 0; }
+    /// Vertical velocity of flying debris less that of a point that follows the ground below, m/s.
+    [[nodiscard]] float climb_at(int column, int row) const { return flies() ? climb_[index(column, row)] : 0; }
     [[nodiscard]] bool carries_pore_pressure() const { return !pore_pressure_.empty(); }
     /// r_u of the debris there, now.
     [[nodiscard]] float pore_pressure_ratio_at(int column, int row) const {
@@ -200,7 +209,8 @@ class Solver {
     /// r_u of the debris in a cell, as it was or would have been at drained_from_: all of it falls alike, so that cells
     /// at rest need no step. Empty: it is the same everywhere and constant.
     std::vector<float> pore_pressure_, next_pore_pressure_;
-    double drained_from_ = 0, pore_pressure_left_ = 1;  ///< s; what is left of the pressure of then
+    std::vector<float> height_, climb_, next_height_, next_climb_;  ///< see Motion; empty: debris does not fly
+    double drained_from_ = 0, pore_pressure_left_ = 1;              ///< s; what is left of the pressure of then
     std::vector<float> friction_, inverse_turbulence_, strength_, stem_drag_,
         structure_;  ///< empty: everywhere the same
     struct {

@@ -21,6 +21,9 @@ struct Motion {
     /// scheme has taken, or below zero, has added. It goes with the mass.
     float* spare;
     float* pore_pressure = nullptr;  ///< see Solver; null: it is the same everywhere
+    /// Of flight: vertical height above the ground, m, and vertical velocity less that of the ground below, m/s. Null:
+    /// debris does not fly.
+    float *height = nullptr, *climb = nullptr;
 };
 /// Per cell; null: everywhere the same.
 struct Cover {

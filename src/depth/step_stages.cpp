@@ -7,6 +7,7 @@
 #include <cmath>
 #include <hwy/highway.h>
 
+#include "depth/flight.hpp"
 #include "depth/formulas.hpp"
 #include "depth/stages.hpp"
 #include "sim/physics/resistance.hpp"
@@ -49,11 +50,13 @@ struct Row {
     Numbers at_rest, bed_x, bed_y;
     Numbers bed, square, lift, spare;  ///< the last three: see FaceSide, Motion
     Numbers pore_pressure;             ///< if it is carried
+    Numbers height, upward;            ///< of flight, and the vertical velocity, if debris flies
 };
 /// Fluxes of a row of faces, that of energy with what is spare, and what the ground's curvature presses at them.
 struct Faces {
     Numbers mass, normal, across, pressure_before, pressure_after, press, energy;
-    Numbers pore_pressure;  ///< that goes with the mass, if it is carried
+    Numbers pore_pressure;   ///< that goes with the mass, if it is carried
+    Numbers height, upward;  ///< the same, if debris flies
 };
 struct Scratch {
     std::array<Row, 2> rows;  ///< of the row and the one before it
@@ -188,6 +191,13 @@ HWY_INLINE void reconstruct(const StageData& data, std::ptrdiff_t i, int cells, 
         const L upward = bed_x * own_u + bed_y * own_v;
         store(bed, row.bed, j);
         store(own_u * own_u + own_v * own_v + upward * upward, row.square, j);
+        if (data.from.height != nullptr) {
+            const L height = at(data.from.height, 0), climb = at(data.from.climb, 0);
+            store(height, row.height, j);
+            store(upward + climb, row.upward, j);
+            store(flight_square(own_u, own_v, upward, {height, climb}, gravity), row.square, j);
+            store(load(row.at_rest, j) * opaque(select(height > zero, zero, one)), row.at_rest, j);
+        }
         store(gravity * flatness, row.lift, j);
         store(at(data.from.spare, 0), row.spare, j);
         store(select(dry, zero, sqrt(own_u * own_u + own_v * own_v) + twice_wave), speed, j);
@@ -278,6 +288,13 @@ HWY_INLINE void cross_faces_with_pore_pressure(const Row& before, int j, const R
           to);
 }
 
+/// The same for debris that flies.
+HWY_INLINE void cross_faces_in_flight(const Row& before, int j, const Row& after, int k, Faces& faces, int to) {
+    const L mass = load(faces.mass, to);
+    store(mass * select(mass > L(0), load(before.height, j), load(after.height, k)), faces.height, to);
+    store(mass * select(mass > L(0), load(before.upward, j), load(after.upward, k)), faces.upward, to);
+}
+
 /// Pore pressure of debris of `depth` after a stage, with `content` of it times depth: rounding must not take it beyond
 /// the values it is a mean of.
 HWY_INLINE L mixed_pore_pressure(const L& content, const L& depth, const L& own, const L& low, const L& high) {
@@ -308,6 +325,13 @@ HWY_INLINE L pore_pressure_after(const StageData& data, const Scratch& scratch, 
         bound_by(comes, fresh);
     }
     return mixed_pore_pressure(content, new_depth, own, low, high);
+}
+
+/// What goes with the mass, per mass, after this stage alone.
+HWY_INLINE L carried_after(const Numbers& own, const Numbers& x, const Numbers& south, const Numbers& north,
+                           const L& depth, const L& new_depth, const L& per_cell, int j) {
+    const L out = load(x, j) - load(x, j - 1) + (load(north, j) - load(south, j));
+    return (depth * load(own, j) - per_cell * out) / larger(new_depth, L(dry_depth));
 }
 
 /// Updates lane_count cells at index i, entry j of the row.
@@ -347,13 +371,25 @@ HWY_INLINE void update(const StageData& data, Scratch& scratch, int r, std::ptrd
         zero, depth - per_cell * (load(x.mass, j) - load(x.mass, j - 1) + (load(north.mass, j) - load(south.mass, j))));
     const L out_x = load(x.normal, j) - load(x.normal, j - 1) + (load(north.across, j) - load(south.across, j));
     const L out_y = load(x.across, j) - load(x.across, j - 1) + (load(north.normal, j) - load(south.normal, j));
-    L m_x = depth * u - per_cell * out_x + dt * (pull * force_x - curvature * bed_x);
-    L m_y = depth * v - per_cell * out_y + dt * (pull * force_y - curvature * bed_y);
+    const bool flies = data.from.height != nullptr;
+    const L hold = gravity * depth / (one + tilt) + curvature;  // below zero the ground would have to hold the debris
+    const L new_height = flies ? larger(zero, carried_after(row.height, x.height, south.height, north.height, depth,
+                                                            new_depth, per_cell, j))
+                               : zero;
+    const L in_air = flies ? opaque(select(smaller(hold, zero - new_height) < zero, one, zero)) : zero;
+    L push_x = pull * force_x - curvature * bed_x, push_y = pull * force_y - curvature * bed_y;
+    if (flies) {
+        push_x = push_x * (one - in_air);
+        push_y = push_y * (one - in_air);
+    }
+    L m_x = depth * u - per_cell * out_x + dt * push_x;
+    L m_y = depth * v - per_cell * out_y + dt * push_y;
     L bound = zero;
     // What debris may move with: its kinetic energy and what is spare, and what comes through the faces and falls there
     // from the bed of one cell to that of the other, over density and area. What depth alone has (lift h^2 / 2) is left
     // out, since single precision would lose the rest in it.
-    const L lift = load(row.lift, j), head = lift * depth, bed = L::load(data.bed + i), square_speed = square(u, v);
+    const L lift = load(row.lift, j), head = lift * depth, bed = L::load(data.bed + i);
+    const L square_speed = flies ? load(row.square, j) : square(u, v);
     const std::ptrdiff_t up = data.stride;
     const auto out = [&](const Faces& faces, int at, std::ptrdiff_t beside) HWY_ATTR {
         return load(faces.energy, at) +
@@ -377,10 +413,27 @@ HWY_INLINE void update(const StageData& data, Scratch& scratch, int r, std::ptrd
     const bool carries = data.from.pore_pressure != nullptr;
     L pore_pressure = carries ? pore_pressure_after(data, scratch, r, i, j, depth, new_depth) : zero;
 
+    L normal_force = larger(zero, hold), lands = zero;
+    Flight<L> flight{zero, zero};
+    if (flies) {
+        const L inverse_depth = one / larger(new_depth, L(dry_depth));
+        const L rises = carried_after(row.upward, x.upward, south.upward, north.upward, depth, new_depth, per_cell, j);
+        flight = fly(new_height, rises, (bed_x * m_x + bed_y * m_y) * inverse_depth, gravity, dt);
+        lands = in_air * opaque(select(flight.height > zero, zero, one));
+        // What is normal to the ground is lost there, by an impulse to which friction belongs as to any other.
+        const L impulse = lands * new_depth * larger(zero, zero - flight.climb) / square_stretch;
+        m_x = m_x - impulse * bed_x;
+        m_y = m_y - impulse * bed_y;
+        energy = energy - half * impulse * magnitude(flight.climb);
+        bound = bound + impulse * inverse_depth * (magnitude(bed_x) + magnitude(bed_y));
+        normal_force = select(in_air > zero, impulse / dt, normal_force);
+        const L stays = in_air - lands;
+        flight = {stays * flight.height, stays * flight.climb};
+    }
     const L m_up = bed_x * m_x + bed_y * m_y, momentum = sqrt(m_x * m_x + m_y * m_y + m_up * m_up);
-    const L normal_force = larger(zero, gravity * depth / (one + tilt) + curvature);
-    const L left = resisted(resistance_at(data, i, new_depth, stretch, pore_pressure), gravity, momentum, new_depth,
-                            normal_force, stretch, dt);
+    L left = resisted(resistance_at(data, i, new_depth, stretch, pore_pressure), gravity, momentum, new_depth,
+                      normal_force, stretch, dt);
+    if (flies) left = select(in_air - lands > zero, momentum, left);
     energy = energy - (momentum - left) * sqrt(square_speed);
     const L moves = smaller(new_depth - L(dry_depth), left);
     const L to_speed =
@@ -400,7 +453,12 @@ HWY_INLINE void update(const StageData& data, Scratch& scratch, int r, std::ptrd
 
     L to_depth = new_depth;
     const L deeper = new_depth - depth;
-    L spare = energy - half * (lift * deeper * deeper + new_depth * square(new_u, new_v));
+    const L on_its_way = opaque(select(moves > zero, one, zero));
+    if (flies) flight = {flight.height * on_its_way, flight.climb * on_its_way};
+    const auto square_of = [&](const L& by_x, const L& by_y, const Flight<L>& of) HWY_ATTR {
+        return flies ? flight_square(by_x, by_y, bed_x * by_x + bed_y * by_y, of, gravity) : square(by_x, by_y);
+    };
+    L spare = energy - half * (lift * deeper * deeper + new_depth * square_of(new_u, new_v, flight));
     const auto difference = [](const L& a, const L& b) HWY_ATTR { return magnitude(a - b); };
     L change = load(scratch.change, j) + difference(new_depth, depth) + difference(new_u, u) + difference(new_v, v);
     if (data.second) {
@@ -411,13 +469,37 @@ HWY_INLINE void update(const StageData& data, Scratch& scratch, int r, std::ptrd
             select(smaller(moves, to_depth - L(dry_depth)) > zero, half / larger(to_depth, L(dry_depth)), zero);
         new_u = (old_depth * old_u + new_depth * new_u) * scale;
         new_v = (old_depth * old_v + new_depth * new_v) * scale;
+        Flight<L> old_flight{zero, zero};
+        L lost = zero;
+        if (flies) {
+            old_flight = {L::load(data.to.height + i), L::load(data.to.climb + i)};
+            const L aloft = opaque(select(flight.height > zero, one, zero));
+            const L height = (old_depth * old_flight.height + new_depth * flight.height) * scale;
+            const L climb = (old_depth * old_flight.climb + new_depth * flight.climb) * scale;
+            // On the ground at the end of the step: half of the first stage may not be.
+            const L strikes = (one - aloft) * climb / square_stretch;
+            new_u = new_u + strikes * bed_x;
+            new_v = new_v + strikes * bed_y;
+            lost = to_depth * strikes * climb;
+            flight = {aloft * height, aloft * climb};
+            change = change + difference(flight.height, old_flight.height) + difference(flight.climb, old_flight.climb);
+        }
         // No faster than that allows. All terms are twice those of a stage, which count half.
         const L old_spare = L::load(data.to.spare + i), rise = new_depth - old_depth;
-        const L allowed = old_depth * (half * square(old_u, old_v) + old_spare) + energy +
-                          lift * (L(0.25F) * rise * rise - half * deeper * deeper);
+        const L allowed = old_depth * (half * square_of(old_u, old_v, old_flight) + old_spare) + energy +
+                          lift * (L(0.25F) * rise * rise - half * deeper * deeper) - lost;
         // Nor faster than from the highest energy line of all.
-        const L wanted = to_depth * square(new_u, new_v), fall = L(data.highest_line) - bed;
+        L wanted = to_depth * square_of(new_u, new_v, flight);
+        const L fall = L(data.highest_line) - bed;
         const L most = larger(zero, smaller(allowed * L(1 / (1 - energy_error)), L(2) * gravity * to_depth * fall));
+        if (flies) {
+            // Nor higher: where debris is held up at a fall, the ground seems to sink below it.
+            const L higher = larger(zero, wanted - most) / (L(2) * gravity * larger(to_depth, L(dry_depth)));
+            const L height = larger(zero, flight.height - higher);
+            const L aloft = opaque(select(height > zero, one, zero));
+            flight = {height, aloft * flight.climb};
+            wanted = to_depth * square_of(new_u, new_v, flight);
+        }
         const L share = select(wanted > most, sqrt(most / larger(wanted, L(1e-30F))), one);
         new_u = new_u * share;
         new_v = new_v * share;
@@ -431,6 +513,11 @@ HWY_INLINE void update(const StageData& data, Scratch& scratch, int r, std::ptrd
     }
     spare = select(to_depth <= L(dry_depth), zero, spare / larger(to_depth, L(dry_depth)));
     spare.store(data.to.spare + i);
+    if (flies) {
+        change = change + flight.height + magnitude(flight.climb);
+        flight.height.store(data.to.height + i);
+        flight.climb.store(data.to.climb + i);
+    }
     if (carries) {
         change = change + difference(pore_pressure, load(row.pore_pressure, j));
         if (data.second) {
@@ -455,7 +542,7 @@ HWY_INLINE void update(const StageData& data, Scratch& scratch, int r, std::ptrd
     const std::ptrdiff_t first =
         static_cast<std::ptrdiff_t>(segment.tile_row) * tile_edge * data.stride + segment.first_tile * tile_edge;
     const auto row_of = [&](int r) HWY_ATTR -> Row& { return scratch.rows[static_cast<std::size_t>(r & 1)]; };
-    const bool carries = data.from.pore_pressure != nullptr;
+    const bool carries = data.from.pore_pressure != nullptr, flies = data.from.height != nullptr;
     Fastest fastest;
     // Row r of the segment is r + 1 here, so that the row before it is 0.
     for (int r = 0; r < tile_edge + 2; ++r) {
@@ -464,6 +551,7 @@ HWY_INLINE void update(const StageData& data, Scratch& scratch, int r, std::ptrd
             for (int j = 0; j <= width; j += lane_count) {
                 cross_faces(data.gravity, row, j, row, j + 1, true, scratch.x, j);
                 if (carries) cross_faces_with_pore_pressure(row, j, row, j + 1, scratch.x, j);
+                if (flies) cross_faces_in_flight(row, j, row, j + 1, scratch.x, j);
             }
         }
         reconstruct(data, first + (r - 1) * static_cast<std::ptrdiff_t>(data.stride) - 1, width + 2, row_of(r),
@@ -473,6 +561,7 @@ HWY_INLINE void update(const StageData& data, Scratch& scratch, int r, std::ptrd
         for (int j = 1; j <= width; j += lane_count) {
             cross_faces(data.gravity, row_of(r - 1), j, row_of(r), j, false, faces, j);
             if (carries) cross_faces_with_pore_pressure(row_of(r - 1), j, row_of(r), j, faces, j);
+            if (flies) cross_faces_in_flight(row_of(r - 1), j, row_of(r), j, faces, j);
         }
         if (r < 2) continue;
         for (int j = 1; j <= width; j += lane_count) {

@@ -122,7 +122,7 @@ void GridObserver::read_gauges(const depth::Solver& solver, bool row) {
         const int c = static_cast<int>(east), r = static_cast<int>(north);
         FlowAt flow{solver.depth_at(c, r)};
         if (flow.depth < thinnest_depth()) return flow;
-        flow.speed = speed_of(solver.u_at(c, r), solver.v_at(c, r), solver.slope_x_at(c, r), solver.slope_y_at(c, r));
+        flow.speed = speed_of(solver, c, r);
         return flow;
     });
 }
@@ -154,8 +154,7 @@ void GridObserver::measure_cells(const depth::Solver& solver) {
     solver.for_each_active_row([&](const depth::ActiveRow& row) {
         const std::size_t first = g.index(row.first, row.row);
         for (int k = 0; k < row.last - row.first; ++k) {
-            measure(first + static_cast<std::size_t>(k), row.depth[k],
-                    speed_of(row.u[k], row.v[k], row.slope_x[k], row.slope_y[k]));
+            measure(first + static_cast<std::size_t>(k), row.depth[k], speed_of(row, k));
         }
     });
 }
@@ -170,8 +169,7 @@ FrontRecord::Head GridObserver::head_at(const depth::Solver& solver, std::size_t
         for (int c = std::max(0, column - head_cells); c <= std::min(g.columns - 1, column + head_cells); ++c) {
             const double depth = solver.depth_at(c, r);
             if (!(depth > thinnest_depth())) continue;
-            const double speed =
-                speed_of(solver.u_at(c, r), solver.v_at(c, r), solver.slope_x_at(c, r), solver.slope_y_at(c, r));
+            const double speed = speed_of(solver, c, r);
             depths += depth;
             sum += depth * speed;
             fastest = std::max(fastest, speed);
@@ -201,7 +199,7 @@ double GridObserver::fastest(const depth::Solver& solver) const {
     solver.for_each_active_row_in_turn([&](const depth::ActiveRow& row) {
         for (int k = 0; k < row.last - row.first; ++k) {
             if (row.depth[k] < thinnest) continue;
-            fastest = std::max(fastest, speed_of(row.u[k], row.v[k], row.slope_x[k], row.slope_y[k]));
+            fastest = std::max(fastest, speed_of(row, k));
         }
     });
     return fastest;
@@ -236,9 +234,7 @@ MapAccumulator::Present GridObserver::present(const depth::Solver& solver) const
             if (!(depth > 0)) continue;
             present.depth.at(column - west, row - south) = depth;
             if (depth < thinnest_depth()) continue;
-            present.speed.at(column - west, row - south) =
-                speed_of(solver.u_at(column, row), solver.v_at(column, row), solver.slope_x_at(column, row),
-                         solver.slope_y_at(column, row));
+            present.speed.at(column - west, row - south) = speed_of(solver, column, row);
         }
     }
     return present;
@@ -250,8 +246,7 @@ double GridObserver::volume_faster_than(const depth::Solver& solver, double limi
     for (int row = 0; row < g.rows; ++row) {
         for (int column = 0; column < g.columns; ++column) {
             if (!(solver.depth_at(column, row) > 0)) continue;
-            const double speed = speed_of(solver.u_at(column, row), solver.v_at(column, row),
-                                          solver.slope_x_at(column, row), solver.slope_y_at(column, row));
+            const double speed = speed_of(solver, column, row);
             if (speed >= limit) depth += solver.depth_at(column, row);
         }
     }
@@ -268,14 +263,13 @@ TimeSample GridObserver::sample(const depth::Solver& solver, double held, double
             const double depth = solver.depth_at(column, row);
             if (!(depth > 0)) continue;
             if (depth > outputs_.arrival_depth) front = std::fmax(front, chainage_[g.index(column, row)]);
-            const double speed = speed_of(solver.u_at(column, row), solver.v_at(column, row),
-                                          solver.slope_x_at(column, row), solver.slope_y_at(column, row));
+            const double speed = speed_of(solver, column, row);
             const double volume = depth * area;
             (speed < outputs_.deposited_speed ? s.volume_deposited : s.volume_moving) += volume;
             s.kinetic_energy += density_ * volume * speed * speed / 2;
             s.momentum += density_ * volume * speed;
-            s.potential_energy +=
-                density_ * volume * solver.material().gravity * (solver.bed_at(column, row) + depth / 2);
+            s.potential_energy += density_ * volume * solver.material().gravity *
+                                  (solver.bed_at(column, row) + depth / 2 + solver.height_at(column, row));
             s.largest_speed = std::max(s.largest_speed, speed);
         }
     }

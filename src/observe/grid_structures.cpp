@@ -159,7 +159,7 @@ void GridStructures::measure_walls(const depth::Solver& solver) {
             depth += part;
             x += part * u;
             y += part * v;
-            up += part * (u * solver.slope_x_at(c, r) + v * solver.slope_y_at(c, r));
+            up += part * (u * solver.slope_x_at(c, r) + v * solver.slope_y_at(c, r) + solver.climb_at(c, r));
         }
         if (!(depth > 0)) continue;
         x /= depth;
@@ -247,8 +247,7 @@ std::vector<DebrisColumn> GridStructures::columns_of(const depth::Solver& solver
             const bool at_face = place.distance < barrier.line.half_thickness() + grid_.cell || own(column - 1, row) ||
                                  own(column + 1, row) || own(column, row - 1) || own(column, row + 1);
             const double bed = solver.bed_at(column, row);
-            const double speed = speed_of(solver.u_at(column, row), solver.v_at(column, row),
-                                          solver.slope_x_at(column, row), solver.slope_y_at(column, row));
+            const double speed = speed_of(solver, column, row);
             columns.push_back({column, row, depth * grid_.cell * grid_.cell, bed, bed + depth,
                                speed < outputs_.deposited_speed, at_face});
         }

@@ -170,6 +170,9 @@ Section declare_solver() {
     s.optional_key("grid_cell_m", "m", &SolverSpec::grid_cell, between(1e-3, 1000),
                    "the terrain's cell, or the largest whole fraction of it up to 2.5 m",
                    "Cell of the depth-averaged model.");
+    s.key("flight", "", &SolverSpec::flight, anything(),
+          "true: debris of the depth-averaged model leaves the ground where that would have to hold it, flies without "
+          "friction, and loses the velocity normal to the ground where it lands. false: it follows the ground.");
     s.rule([](const SolverSpec& solver, const SceneSpec&, double spacing) -> std::optional<Violation> {
         const double small = solver.smallest_time_step, large = largest_time_step(solver, spacing);
         if (small <= large) return {};

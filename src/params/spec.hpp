@@ -248,6 +248,7 @@ struct SolverSpec {
     BackendChoice backend = BackendChoice::cpu;
     ModelChoice model = ModelChoice::particles;
     std::optional<double> grid_cell = {};  ///< m, of the depth-averaged model
+    bool flight = false;                   ///< depth-averaged debris leaves the ground, flies and lands
 };
 
 /// Whose intensity classes are mapped; the tables are in report/intensity.cpp.

@@ -114,6 +114,7 @@ class GridRun {
                     volume_of(scene.releases)),
           stop_rule_(scene.spec.solver),
           clock_(scene.spec.solver) {
+        if (scene.spec.solver.flight) solver_.let_fly();
         held_ = volume_of(scene.releases);
         release_due();
         observer_.watch(solver_, scene.gauges);

@@ -122,6 +122,7 @@ constexpr std::array keys = {
     DepthAveragedKey{"solver.backend", noted, ""},
     DepthAveragedKey{"solver.model", used, ""},
     DepthAveragedKey{"solver.grid_cell_m", used, ""},
+    DepthAveragedKey{"solver.flight", used, ""},
     DepthAveragedKey{"outputs.map_cell_m", noted, ""},
     DepthAveragedKey{"outputs.sample_interval_s", used, ""},
     DepthAveragedKey{"outputs.chainage_interval_m", used, ""},

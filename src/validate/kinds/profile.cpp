@@ -89,6 +89,7 @@ struct ProfileSpec {
     double spacing = 0, time = 0, probe = 0;  // m, s, m; probe 0: none
     int width = 0;                            // spacings, of the slice of particles
     std::vector<double> cells;                // m, of the depth-averaged grids
+    bool flight = false;                      // whether depth-averaged debris leaves the ground
 
     [[nodiscard]] double middle() const { return (shape.start() + shape.end()) / 2; }
 };
@@ -255,14 +256,16 @@ End run_grid(const ProfileSpec& spec, double cell, const Setting& setting, const
     scene::Scene scene;
     scene.terrain = world.terrain;
     depth::Solver solver(ground.bed, depth::material_of(setting.material), {}, depth::Edges::continued);
+    if (spec.flight) solver.let_fly();
     solver.add(run::grid_release(scene, world.release(spec, cell), ground));
     const auto look = [&] {
         for (int column = 0; column < ground.bed.geometry.columns; ++column) {
             const double depth = solver.depth_at(column, 0);
             if (!(depth > 0)) continue;
             const double u = solver.u_at(column, 0);
-            record.add(world.middle + ground.bed.geometry.centre(column, 0).x, ground.bed.at(column, 0) + depth / 2,
-                       depth, u, std::hypot(u, u * solver.slope_x_at(column, 0)));
+            const double elevation = ground.bed.at(column, 0) + solver.height_at(column, 0) + depth / 2;
+            record.add(world.middle + ground.bed.geometry.centre(column, 0).x, elevation, depth, u,
+                       std::hypot(u, u * solver.slope_x_at(column, 0) + solver.climb_at(column, 0)));
         }
         record.end_step(solver.time_step());
     };
@@ -386,6 +389,7 @@ Computation prepare(Parameters& parameters, const Setting& setting) {
     spec.width = parameters.whole_number("width_spacings", {.low = 2, .high = 1000}, 6);
     spec.time = parameters.number("time_s", positive, 40);
     spec.probe = parameters.number("probe_m", not_negative, 0);
+    spec.flight = parameters.choice("depth_averaged_flight", {"off", "on"}, "off") == "on";
     return [spec, setting](const Watch& watch) { return compute(spec, setting, watch); };
 }
 
