@@ -42,12 +42,14 @@ class JobsTest : public StartPage {
         }
         return nullptr;
     }
-    /// The job once `good` says so.
+    /// The job once `good` says so, or a minute after it last got on.
     json wait(const std::string& name, const std::function<bool(const json&)>& good) {
-        json now = job(name);
+        json now = job(name), done = now["done"];
         for (int i = 0; i < 1200 && !good(now); ++i) {
             std::this_thread::sleep_for(std::chrono::milliseconds(50));
             now = job(name);
+            if (now["done"] != done) i = 0;
+            done = now["done"];
         }
         EXPECT_TRUE(good(now)) << now.dump();
         return now;
