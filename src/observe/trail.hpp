@@ -39,15 +39,15 @@ class TrailDistances {
 
     /// A cell at the edge of an island, and the nearest cell that was joined before.
     struct Edge {
-        Cell cell;
-        std::int32_t island;
+        Cell cell = -1;
+        std::int32_t island = -1;
         Cell from = -1;
         double gap = std::numeric_limits<double>::infinity();  ///< m
     };
 
     struct Place {
         PlanPoint at;
-        Cell cell;
+        Cell cell = -1;
     };
 
     void search();
