@@ -117,13 +117,15 @@ Result<Measurement> compute_variant(const RoughSpec& spec, const Variant& varian
         start = state_at_rest(
             {LocalPoint{static_cast<float>(first), 0, below.height} + below.normal * float(variant.spacing / 2)});
     }
-    std::vector<double> starts;
     for (std::uint32_t i = 0; i < start.count; ++i) {
         const LocalPoint p = start.position.at(i), normal = terrain.sample(p.x, p.y).normal;
         start.velocity.set(i, LocalPoint{normal.z, 0, -normal.x} * float(spec.speed / std::hypot(normal.x, normal.z)));
     }
     const int masses = variant.thickness > 0 ? 80 : 1;
-    for (int k = 0; k < masses; ++k) starts.push_back(first + spec.length * ((k + 0.5) / masses - 0.5));
+    std::vector<double> starts(static_cast<std::size_t>(masses));
+    for (int k = 0; k < masses; ++k) {
+        starts[static_cast<std::size_t>(k)] = first + spec.length * ((k + 0.5) / masses - 0.5);
+    }
     const double friction = setting.material.friction_coefficient;
     Means law_start;
     const Means law_end = point_masses(terrain, friction, gravity, spec.speed, starts, spec.time, law_start);
