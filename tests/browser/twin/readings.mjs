@@ -212,6 +212,17 @@ export async function testReadings(run) {
     await until(() => page.locator(".tab-panel:visible").textContent(), (text) => text.includes(`${s.volume_moving_m3.toFixed(1)} m³`) && text.includes(s.hash), "volume and hash");
     const card = await page.textContent(".run-card");
     for (const words of [/Largest speed.*m\/s/, /Steps.*\/s/, /Real time.*×/, /ompress/]) assert.match(card, words);
+    // The verdict is one line; what each check says lies over the readings and moves nothing.
+    const { verdict } = await state();
+    const tabs = page.locator("[data-tab=balance]"), list = page.locator(".verdict ul"), stood = await boxOf(tabs);
+    assert.equal(await page.textContent(".verdict summary"), verdict.within_limits ? "Run within its limits" : `Run ${verdict.text}`);
+    await page.click(".verdict summary");
+    await list.waitFor();
+    for (const check of verdict.checks) assert.ok((await list.textContent()).includes(check.text), check.text);
+    assert.deepEqual(await boxOf(tabs), stood, "the tabs stay where they were");
+    await run.shot(page, "11-verdict");
+    await page.mouse.click(stood.x, 700);
+    await until(() => list.isVisible(), (seen) => !seen, "a click beside the list puts it away");
   });
 
   await run.check("scrubbing shows earlier times, playback plays them, live returns", async () => {

@@ -20,8 +20,12 @@ export function runCard(twin: Twin): HTMLElement {
   const real = cell("Real time", "Simulated seconds per second");
   const message = h("p", { class: "run-message", role: "alert" });
   const light = h("div", { class: "compression", role: "status" });
-  const verdict = h("details", { class: "verdict" });
-  let shown = "", beyond = false;
+  const judgement = h("summary", {}), checks = h("ul", {});
+  const verdict = h("details", { class: "verdict" }, judgement, checks);
+  // The list lies over the readings: a click beside it puts it away.
+  document.addEventListener("pointerdown", (event) => { if (!verdict.contains(event.target as Node)) verdict.open = false; });
+  verdict.addEventListener("keydown", (event) => { if (event.key === "Escape") verdict.open = false; });
+  let shown = "";
   watchAll(watched(twin), () => {
     const s = twin.shownState();
     const live = twin.replay_s.value === null;
@@ -49,11 +53,9 @@ export function runCard(twin: Twin): HTMLElement {
     const now = JSON.stringify(judged);
     if (judged && now !== shown) {
       shown = now;
-      verdict.classList.toggle("beyond", !judged.within_limits);
-      verdict.replaceChildren(h("summary", {}, judged.within_limits ? "Run within its limits" : `Run ${judged.text}`),
-        h("ul", {}, ...judged.checks.map((check) => h("li", { class: check.state }, h("b", {}, `${check.name}. `), check.text))));
-      if (!judged.within_limits && !beyond) verdict.open = true;
-      beyond = !judged.within_limits;
+      verdict.classList.toggle("bad", !judged.within_limits);
+      judgement.textContent = judged.within_limits ? "Run within its limits" : `Run ${judged.text}`;
+      checks.replaceChildren(...judged.checks.map((check) => h("li", { "data-state": check.state }, h("b", {}, `${check.name}. `), check.text)));
     }
   });
   return h("section", { class: "run-card", "aria-label": "State of the run" },
