@@ -96,3 +96,14 @@ function(talus_test name label)
   gtest_discover_tests(test_${name} TEST_PREFIX ${name}. ${filter} PROPERTIES LABELS ${label} TIMEOUT 300
                        PROCESSORS ${processors} DISCOVERY_TIMEOUT 60)
 endfunction()
+
+# talus_reads_foreign(TARGET): a test program that has files of strangers read, and sees what is opened for it.
+function(talus_reads_foreign target)
+  if(NOT TARGET ${target})
+    return()
+  endif()
+  target_sources(${target} PRIVATE ${PROJECT_SOURCE_DIR}/tests/support/witness.cpp ${PROJECT_SOURCE_DIR}/tests/support/witness_log.cpp)
+  target_link_libraries(${target} PRIVATE ${CMAKE_DL_LIBS})
+  target_compile_definitions(${target} PRIVATE FOREIGN_CHILD="$<TARGET_FILE:foreign_child>")
+  add_dependencies(${target} foreign_child)
+endfunction()

@@ -64,6 +64,7 @@ Result<Job> open_job(const CompareArguments& arguments, InterruptWatch& watch) {
     std::vector<std::string> of_grid = input.source.overrides;
     of_grid.emplace_back("solver.model=depth_averaged");
     TALUS_ASSIGN(auto grid_scene, scene::load_scene(input.source.file, of_grid));
+    name_originals(grid_scene, input.originals);
     leave_out_zoom(input.scene, "talus compare");
     if (input.unpacked) {
         name_unpacked_files(input.scene, input.unpacked->path(), input.name);

@@ -17,6 +17,7 @@
 
 #include "command.hpp"
 #include "exit_code.hpp"
+#include "geo/foreign.hpp"
 #include "sim/backend_choice.hpp"
 #include "simd/dispatch.hpp"
 #include "start.hpp"
@@ -128,6 +129,7 @@ int main(int argc, char** argv) {
     // A closed pipe and a file size limit are errors to report; they must not terminate the program.
     signal(SIGPIPE, SIG_IGN);
     signal(SIGXFSZ, SIG_IGN);
+    talus::geo::read_foreign(argc, argv);  // the part of a child process of this program
     try {
         return talus::cli::talus_main(argc, argv);
     } catch (const std::bad_alloc&) {

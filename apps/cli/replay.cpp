@@ -61,7 +61,9 @@ Result<scene::Scene> load_scene_of(const ReplayArguments& arguments, const twin:
     if (arguments.threads) overrides.push_back(fmt::format("solver.thread_count={}", *arguments.threads));
     const std::string file = arguments.scene.empty() ? journal.scene_file : arguments.scene;
     TALUS_ASSIGN(const SceneFile found, find_scene(file, watch));
+    TALUS_TRY(scene::check_saved_overrides(found.file, journal.overrides));
     TALUS_ASSIGN(scene::Scene scene, scene::load_scene(found.file, overrides));
+    name_originals(scene, found.originals);
     if (found.unpacked) name_unpacked_files(scene, found.unpacked->path(), found.name);
     return scene;
 }

@@ -119,6 +119,7 @@ Result<Job> open_job(const RunArguments& arguments, ProgressReporter& progress, 
     TALUS_ASSIGN(const auto settled, settle_layers(input.source.file, input.source.overrides, arguments.layers,
                                                    input.scene, say, watch.stop_requested()));
     TALUS_ASSIGN(auto plan, VariantPlan::make(arguments, input.source, input.scene));
+    name_originals(input.scene, input.originals);  // it may have been loaded again
     if (input.unpacked) name_unpacked_files(input.scene, input.unpacked->path(), input.name);
     progress.clear();
     if (settled && arguments.json) (void)print(cost_json(*settled) + "\n");

@@ -45,6 +45,7 @@ int check_command(const CheckArguments& arguments) {
     const auto say = [](const std::string& what) { (void)std::fputs((what + "\n").c_str(), stderr); };
     const auto settled = settle_layers(found->file, *overrides, arguments.layers, *scene, say, watch.stop_requested());
     if (!settled) return fail(exit_code::bad_input, settled.error().message);
+    name_originals(*scene, found->originals);
     std::string text = describe_scene(*scene) + (*settled ? "cost        " + cost_text(**settled) + "\n" : "");
     if (scene->zoom) {
         say("running the event with the depth-averaged model, up to the zoom");

@@ -3,6 +3,8 @@
 #include <filesystem>
 #include <utility>
 
+#include "command.hpp"
+#include "core/isolation.hpp"
 #include "core/try.hpp"
 #include "layers.hpp"
 #include "scene/builtin.hpp"
@@ -33,7 +35,12 @@ Result<SceneFile> find_scene(const std::string& scene, InterruptWatch& watch) {
         s.short_name = scene::builtin_scene_name;
         s.name = builtin_prefix + s.short_name;
     } else {
-        TALUS_ASSIGN(s.file, scene::unpack_bundle(given, s.unpacked->path()));
+        if (const std::string lacks = missing_isolation(available_isolation()); !lacks.empty()) note(lacks);
+        geo::ForeignReader reader;
+        reader.shall_end = [&watch] { return watch.stop_requested().load(); };
+        TALUS_ASSIGN(auto unpacked, scene::unpack_bundle(given, s.unpacked->path(), {}, reader));
+        s.file = std::move(unpacked.scene);
+        s.originals = std::move(unpacked.originals);
         s.short_name = given.stem().string();
         s.name = fs::absolute(given).lexically_normal().string();
     }
@@ -47,6 +54,7 @@ Result<SceneInput> open_scene(const std::string& scene, const std::vector<std::s
     TALUS_ASSIGN(static_cast<SceneFile&>(s), find_scene(scene, watch));
     s.source.file = s.file;
     TALUS_ASSIGN(s.scene, load_layered(s.source.file, s.source.overrides, layers));
+    name_originals(s.scene, s.originals);
     return Result<SceneInput>(std::move(s));
 }
 

@@ -8,6 +8,7 @@
 #include "core/temporary_folder.hpp"
 #include "interrupt.hpp"
 #include "run/variants.hpp"
+#include "scene/bundle.hpp"
 #include "scene/scene.hpp"
 
 namespace talus::cli {
@@ -19,8 +20,9 @@ inline const std::string builtin_prefix = "built-in:";
 struct SceneFile {
     std::unique_ptr<TemporaryFolder> unpacked;  ///< of the built-in scene or a bundle
     std::filesystem::path file;
-    std::string name;        ///< as in the definition of an ensemble or calibration
-    std::string short_name;  ///< for the default output folder
+    std::string name;                               ///< as in the definition of an ensemble or calibration
+    std::string short_name;                         ///< for the default output folder
+    std::vector<scene::OriginalInput> originals{};  ///< of a bundle
 };
 
 /// `scene` as given: a scene file, a bundle (FILE.zip, or a file in it as journals name it), empty or

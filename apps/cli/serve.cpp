@@ -124,6 +124,7 @@ int serve_command(const ServeArguments& arguments) {
     const auto settled = settle_layers(file, *overrides, arguments.layers, *loaded, say, watch.stop_requested());
     if (!settled) return fail(exit_code::bad_input, settled.error().message);
     if (*settled && say) say(cost_text(**settled));
+    name_originals(*loaded, found->originals);
     if (found->unpacked) name_unpacked_files(*loaded, found->unpacked->path(), found->name);
     if (const Status fits = check_alerts(arguments.alerts, loaded->spec); !fits) {
         return fail(exit_code::bad_input, fits.error().message);

@@ -1,5 +1,7 @@
 #include "start.hpp"
 
+#include <chrono>
+#include <csignal>
 #include <cstdio>
 #include <cstdlib>
 #include <fcntl.h>
@@ -21,6 +23,7 @@
 #include "alert_options.hpp"
 #include "command.hpp"
 #include "core/input_file.hpp"
+#include "core/isolation.hpp"
 #include "core/temporary_folder.hpp"
 #include "exit_code.hpp"
 #include "interrupt.hpp"
@@ -31,6 +34,8 @@ namespace talus::cli {
 namespace {
 
 namespace fs = std::filesystem;
+
+constexpr std::chrono::seconds longest_end{30};  // jobs are asked to end, and have half of it for that
 
 struct StartArguments {
     std::string file;    ///< a scene or a saved session; empty: the start page
@@ -129,6 +134,7 @@ int start_command(const StartArguments& arguments) {
         }
         watch.request_stop();
     };
+    if (const std::string lacks = missing_isolation(available_isolation()); !lacks.empty()) note(lacks);
     auto server = serve::Server::listen(std::move(options));
     if (!server) return fail(exit_code::failure, server.error().message);
     (*server)->start(std::move(start));
@@ -143,6 +149,11 @@ int start_command(const StartArguments& arguments) {
     // Nobody could open a page whose link is lost.
     if (const int printed = print_result(text); printed != exit_code::success && !opened) return printed;
     watch.wait();
+    // Whatever still computes then: who ends the program wants it to end.
+    std::thread([] {
+        std::this_thread::sleep_for(longest_end);
+        kill(getpid(), SIGTERM);  // as a second Ctrl-C
+    }).detach();
     server->reset();
 
     const std::lock_guard lock(mutex);

@@ -46,8 +46,9 @@ struct Pipe {
     [[nodiscard]] bool good() const { return read >= 0; }
 };
 
+/// Of processor time: the first limit tells the process, the last one ends it.
 void limit(int resource, std::uint64_t most) {
-    const rlimit wanted{most, most};
+    const rlimit wanted{most, resource == RLIMIT_CPU ? most + 2 : most};
     if (most > 0) setrlimit(static_cast<__rlimit_resource>(resource), &wanted);
 }
 
@@ -69,6 +70,7 @@ void limit(int resource, std::uint64_t most) {
     if (child.niceness != 0) setpriority(PRIO_PROCESS, 0, getpriority(PRIO_PROCESS, 0) + child.niceness);
     limit(RLIMIT_AS, child.memory);
     limit(RLIMIT_CPU, static_cast<std::uint64_t>(child.processor_time.count()));
+    limit(RLIMIT_FSIZE, child.largest_file);
     if (*folder == 0 || chdir(folder) == 0) execv(arguments[0], arguments);
     constexpr char words[] = "cannot be started";
     (void)!write(STDERR_FILENO, words, sizeof words - 1);
@@ -97,7 +99,7 @@ void take_lines(std::string& text, const std::function<void(const std::string&)>
 /// Asks a process to end, more and more urgently.
 class Ending {
   public:
-    explicit Ending(pid_t process) : process_(process) {}
+    Ending(pid_t process, bool at_once) : process_(process), asked_(at_once ? 2 : 0) {}
     void ask() {
         const auto now = Clock::now();
         if (now < next_) return;
@@ -108,7 +110,7 @@ class Ending {
 
   private:
     pid_t process_;
-    int asked_ = 0;
+    int asked_;
     Clock::time_point next_{};
 };
 
@@ -124,6 +126,15 @@ Result<ChildOutcome> run_child(const ChildProcess& child) {
     for (std::string& word : words) arguments.push_back(word.data());
     arguments.push_back(nullptr);
     const std::string folder = child.folder.string();
+    if (!child.output.empty()) {
+        Pipe::close_end(out.write);
+        out.write = open(child.output.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC | O_NOFOLLOW, 0600);
+        if (out.write < 0) {
+            const int why = errno;
+            if (nothing >= 0) close(nothing);
+            return Error{child.output.string() + ": cannot be written: " + std::strerror(why)};
+        }
+    }
     const pid_t parent = getpid();
     const pid_t process = out.good() && error.good() && nothing >= 0 ? fork() : -1;
     if (process == 0) become(child, arguments.data(), folder.c_str(), nothing, out.write, error.write, parent);
@@ -134,7 +145,7 @@ Result<ChildOutcome> run_child(const ChildProcess& child) {
     Pipe::close_end(error.write);
 
     ChildOutcome outcome;
-    Ending ending(process);
+    Ending ending(process, child.end_at_once);
     std::string lines;
     const auto begun = Clock::now();
     std::array<pollfd, 2> files = {pollfd{out.read, POLLIN, 0}, pollfd{error.read, POLLIN, 0}};

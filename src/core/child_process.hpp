@@ -20,9 +20,13 @@ struct ChildProcess {
     // What it may take; 0: no limit of its own.
     std::uint64_t memory = 0;                             ///< bytes of address space
     std::chrono::seconds processor_time{0}, patience{0};  ///< of all its threads; by the clock
+    std::uint64_t largest_file = 0;                       ///< bytes of a file that it writes
+    /// A file that takes its standard output, made anew; empty: on_line does.
+    std::filesystem::path output = {};
     /// Asked several times a second: whether it shall end. It is then told so by SIGTERM, again later, and by SIGKILL
-    /// at last.
+    /// at last, or by that alone.
     std::function<bool()> shall_end = {};
+    bool end_at_once = false;                              ///< by SIGKILL alone
     std::function<void(const std::string&)> on_line = {};  ///< lines on its standard output, from the caller's thread
 };
 

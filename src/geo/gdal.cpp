@@ -64,13 +64,21 @@ void GdalMessages::clear() {
     warning_.clear();
 }
 
+GDALDatasetUniquePtr open_as_identified(const std::string& file, unsigned flags) {
+    prepare_gdal();
+    GDALDriverH found = GDALIdentifyDriverEx(file.c_str(), flags & (GDAL_OF_RASTER | GDAL_OF_VECTOR), nullptr, nullptr);
+    const char* const driver[] = {found != nullptr ? GDALGetDriverShortName(found) : nullptr, nullptr};
+    return GDALDatasetUniquePtr(GDALDataset::Open(file.c_str(), flags | GDAL_OF_READONLY | GDAL_OF_VERBOSE_ERROR,
+                                                  found != nullptr ? driver : nullptr));
+}
+
 Result<GDALDatasetUniquePtr> open_dataset(const std::string& file, unsigned flags, const std::string& kind) {
     GdalMessages messages;
     if (file.empty()) return Error{fmt::format("no file name given for a {}", kind)};
 
     // GDAL also accepts names that are not paths, such as NETCDF:"file.nc":band or /vsizip/...; only a name that GDAL
     // cannot open is examined as a path, to explain the failure.
-    GDALDatasetUniquePtr data(GDALDataset::Open(file.c_str(), flags | GDAL_OF_READONLY | GDAL_OF_VERBOSE_ERROR));
+    GDALDatasetUniquePtr data = open_as_identified(file, flags);
     if (data) return Result<GDALDatasetUniquePtr>(std::move(data));
 
     std::error_code failed;

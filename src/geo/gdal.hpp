@@ -33,6 +33,10 @@ class GdalMessages {
     std::string failure_, warning_;
 };
 
+/// Opens a data set with the driver whose format it is found to have, and no other: otherwise the next driver would try
+/// what the first one refuses, and a text can look like several formats. Null: cannot be opened.
+[[nodiscard]] GDALDatasetUniquePtr open_as_identified(const std::string& file, unsigned flags);
+
 /// Opens a data set for reading. `flags`: GDAL_OF_RASTER or GDAL_OF_VECTOR; `kind`: "raster", for the messages.
 /// Errors: missing, no permission, a folder, empty, not recognised.
 [[nodiscard]] Result<GDALDatasetUniquePtr> open_dataset(const std::string& file, unsigned flags,

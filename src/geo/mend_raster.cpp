@@ -12,7 +12,6 @@
 #include "core/try.hpp"
 #include "geo/gdal.hpp"
 #include "geo/spatial_reference.hpp"
-#include "geo/zip_archive.hpp"
 
 namespace talus::geo {
 namespace {
@@ -60,15 +59,6 @@ void scale_values(GDALRasterBand& band, double metres_per_unit) {
 }
 
 }  // namespace
-
-Result<FileKind> kind_of(const std::string& file) {
-    TALUS_ASSIGN(const auto files, files_of(file));
-    const GdalMessages messages;
-    const GDALDatasetUniquePtr vector(GDALDataset::Open(file.c_str(), GDAL_OF_VECTOR));
-    if (vector && vector->GetLayerCount() > 0) return FileKind::vector;
-    const GDALDatasetUniquePtr raster(GDALDataset::Open(file.c_str(), GDAL_OF_RASTER));
-    return raster && raster->GetRasterCount() > 0 ? FileKind::raster : FileKind::other;
-}
 
 Result<RasterFacts> raster_facts(const std::string& file) {
     TALUS_ASSIGN(const auto data, open_dataset(file, GDAL_OF_RASTER, "raster"));

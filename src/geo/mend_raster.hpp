@@ -10,9 +10,6 @@ namespace talus::geo {
 /// What a file holds, by the formats that GDAL knows.
 enum class FileKind { raster, vector, other };
 
-/// Of a file somebody else may have made. Errors: as files_of, a format that may name other files.
-[[nodiscard]] Result<FileKind> kind_of(const std::string& file);
-
 /// What a raster says about itself, whether or not it can serve as terrain; reads no cells.
 struct RasterFacts {
     std::string format;  ///< "GTiff"

@@ -8,6 +8,8 @@
 
 #include <fmt/format.h>
 
+#include "core/try.hpp"
+#include "geo/foreign_data.hpp"
 #include "geo/mesh_faces.hpp"
 #include "terrain/barrier.hpp"
 
@@ -26,6 +28,11 @@ bool ends_with(const std::string& text, const std::string& end) {
 /// `name` in lower case.
 bool is_gltf(const std::string& name) {
     return ends_with(name, ".gltf") || ends_with(name, ".glb");
+}
+
+/// A mesh that was converted.
+bool is_roofs(const std::string& name) {
+    return ends_with(name, ".roofs.json");
 }
 
 /// Newell's: twice the area along each axis, right for faces that are not quite plane.
@@ -48,11 +55,19 @@ Ring plan_of(const std::vector<WorldPoint>& ring) {
     return plan;
 }
 
+Result<ForeignMesh> read_roofs(const std::string& file) {
+    TALUS_ASSIGN(const std::string text, read_mesh_text(file));
+    auto mesh = read_foreign_mesh(text);
+    if (!mesh) return Error{file + ": " + mesh.error().message};
+    return mesh;
+}
+
 }  // namespace
 
 bool is_mesh_file(const std::string& file) {
     const std::string name = lower_case(file);
-    return ends_with(name, ".obj") || is_gltf(name) || ends_with(name, ".city.json") || ends_with(name, ".cityjson");
+    return ends_with(name, ".obj") || is_gltf(name) || ends_with(name, ".city.json") || ends_with(name, ".cityjson") ||
+           is_roofs(name);
 }
 
 Result<std::string> read_mesh_text(const std::string& file) {
@@ -102,10 +117,33 @@ Result<std::vector<RoofFace>> find_roofs(const std::vector<MeshFace>& faces) {
     return roofs;
 }
 
+Status check_mesh_epsg(const std::string& file, int epsg, const Crs& terrain_crs) {
+    if (epsg == 0 || terrain_crs.epsg == 0 || epsg == terrain_crs.epsg) return {};
+    return Error{
+        fmt::format("{}: metadata.referenceSystem is EPSG:{}, the terrain's is EPSG:{}; bring the file into it "
+                    "(cjio FILE crs_reproject {})",
+                    file, std::max(0, epsg), terrain_crs.epsg, terrain_crs.epsg)};
+}
+
+Result<int> mesh_epsg(const std::string& file) {
+    const std::string name = lower_case(file);
+    if (is_roofs(name)) {
+        TALUS_ASSIGN(const auto mesh, read_roofs(file));
+        return mesh.epsg;
+    }
+    if (ends_with(name, ".obj") || is_gltf(name)) return 0;
+    return city_json_epsg(file);
+}
+
 Result<std::vector<MeshBuilding>> read_mesh_buildings(const std::string& file, const Crs& terrain_crs,
                                                       std::vector<std::string>& more_files) {
     const std::string name = lower_case(file);
     if (is_gltf(name)) return read_gltf(file, more_files);
+    if (is_roofs(name)) {
+        TALUS_ASSIGN(auto mesh, read_roofs(file));
+        TALUS_TRY(check_mesh_epsg(file, mesh.epsg, terrain_crs));
+        return Result<std::vector<MeshBuilding>>(std::move(mesh.buildings));
+    }
     return ends_with(name, ".obj") ? read_obj(file) : read_city_json(file, terrain_crs);
 }
 

@@ -44,16 +44,17 @@ class CityReader {
             return Error{
                 fmt::format("{}: version is {}; it must be \"1.0\", \"1.1\" or \"2.0\"", file_, brief(version))};
         }
+        return check_mesh_epsg(file_, epsg(), terrain_crs);
+    }
+
+    /// 0: none is stated; -1: one without a code.
+    [[nodiscard]] int epsg() const {
         const json& system = member(member(city_, "metadata"), "referenceSystem");
-        if (!system.is_string() || terrain_crs.epsg == 0) return {};
+        if (!system.is_string()) return 0;
         const std::string name = system;  // .../def/crs/EPSG/0/7415, urn:ogc:def:crs:EPSG::28992
         const std::size_t digits = name.find_last_not_of("0123456789");
-        const int epsg = std::atoi(name.c_str() + (digits == std::string::npos ? 0 : digits + 1));
-        if (epsg == terrain_crs.epsg) return {};
-        return Error{
-            fmt::format("{}: metadata.referenceSystem is EPSG:{}, the terrain's is EPSG:{}; bring the file into it "
-                        "(cjio FILE crs_reproject {})",
-                        file_, epsg, terrain_crs.epsg, terrain_crs.epsg)};
+        const int code = std::atoi(name.c_str() + (digits == std::string::npos ? 0 : digits + 1));
+        return code > 0 ? code : -1;
     }
 
     Status read_vertices() {
@@ -181,6 +182,13 @@ class CityReader {
 };
 
 }  // namespace
+
+Result<int> city_json_epsg(const std::string& file) {
+    TALUS_ASSIGN(const std::string text, read_mesh_text(file));
+    const Result<json> city = parse_json(text);
+    if (!city) return Error{file + ": " + city.error().message};
+    return CityReader(file, *city).epsg();
+}
 
 Result<std::vector<MeshBuilding>> read_city_json(const std::string& file, const Crs& terrain_crs) {
     TALUS_ASSIGN(const std::string text, read_mesh_text(file));

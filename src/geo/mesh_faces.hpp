@@ -28,5 +28,8 @@ using MeshFace = std::vector<std::vector<WorldPoint>>;
 [[nodiscard]] Result<std::vector<MeshBuilding>> read_gltf(const std::string& file,
                                                           std::vector<std::string>& more_files);
 [[nodiscard]] Result<std::vector<MeshBuilding>> read_city_json(const std::string& file, const Crs& terrain_crs);
+[[nodiscard]] Result<int> city_json_epsg(const std::string& file);
+/// Error: the mesh states another system than the terrain's.
+[[nodiscard]] Status check_mesh_epsg(const std::string& file, int epsg, const Crs& terrain_crs);
 
 }  // namespace talus::geo

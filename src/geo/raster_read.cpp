@@ -90,17 +90,7 @@ Result<StoredRange> read_window(const std::string& file, const RasterSource& sou
     const int first_column = source.first_column_west ? window.column : source.columns - window.column - window.columns;
     const int first_line = source.first_row_north ? source.rows - window.row - window.rows : window.row;
 
-    // GDAL reads a block that was never written as zeros: an interrupted copy would become a plain at sea level.
-    if (!source.nodata) {
-        const int coverage =
-            band.GetDataCoverageStatus(first_column, first_line, window.columns, window.rows, 0, nullptr);
-        if ((coverage & GDAL_DATA_COVERAGE_STATUS_EMPTY) != 0) {
-            return Error{
-                fmt::format("{}: parts of the raster were never written (an interrupted copy?) and no nodata "
-                            "value is declared",
-                            file)};
-        }
-    }
+    TALUS_TRY(check_coverage(file, band, first_column, first_line, window.columns, window.rows));
 
     GDALRasterBand* mask = (band.GetMaskFlags() & GMF_ALL_VALID) != 0 ? nullptr : band.GetMaskBand();
     int block_width = 1, block_height = 1;

@@ -186,8 +186,21 @@ Result<std::string> value_unit_of(const std::string& file, int band_number, GDAL
         mended)};
 }
 
-/// GDAL reads zeros where a raw file ends too early; detected by its size.
-Status check_raw_size(const std::string& file, const std::string& driver, GDALDataset& data) {
+Error no_bands(const std::string& file, GDALDataset& data) {
+    std::string names;
+    for (char** item = data.GetMetadata("SUBDATASETS"); item != nullptr && *item != nullptr; ++item) {
+        const std::string entry = *item;
+        const auto equals = entry.find("_NAME=");
+        if (equals != std::string::npos) names += (names.empty() ? "" : ", ") + entry.substr(equals + 6);
+    }
+    if (names.empty()) return {fmt::format("{}: holds no raster band", file)};
+    return {fmt::format("{}: holds several rasters; name one of them as the file: {}", file, names)};
+}
+
+}  // namespace
+
+Status check_raw_size(const std::string& file, GDALDataset& data) {
+    const std::string driver = data.GetDriver() != nullptr ? data.GetDriver()->GetDescription() : "";
     constexpr std::array raw_drivers = {"ENVI", "EHdr", "GenBin", "ISCE", "ROI_PAC", "RRASTER"};
     if (std::find(raw_drivers.begin(), raw_drivers.end(), driver) == raw_drivers.end()) return {};
     VSIStatBufL stat;
@@ -202,18 +215,15 @@ Status check_raw_size(const std::string& file, const std::string& driver, GDALDa
                              expected, stat.st_size)};
 }
 
-Error no_bands(const std::string& file, GDALDataset& data) {
-    std::string names;
-    for (char** item = data.GetMetadata("SUBDATASETS"); item != nullptr && *item != nullptr; ++item) {
-        const std::string entry = *item;
-        const auto equals = entry.find("_NAME=");
-        if (equals != std::string::npos) names += (names.empty() ? "" : ", ") + entry.substr(equals + 6);
-    }
-    if (names.empty()) return {fmt::format("{}: holds no raster band", file)};
-    return {fmt::format("{}: holds several rasters; name one of them as the file: {}", file, names)};
+Status check_coverage(const std::string& file, GDALRasterBand& band, int column, int line, int columns, int lines) {
+    int given = 0;
+    (void)band.GetNoDataValue(&given);
+    if (given != 0) return {};
+    const int coverage = band.GetDataCoverageStatus(column, line, columns, lines, 0, nullptr);
+    if ((coverage & GDAL_DATA_COVERAGE_STATUS_EMPTY) == 0) return {};
+    return Error{fmt::format(
+        "{}: parts of the raster were never written (an interrupted copy?) and no nodata value is declared", file)};
 }
-
-}  // namespace
 
 std::string declare_nodata_command(const std::string& file, const std::string& driver, double value) {
     if (driver == "GTiff") return fmt::format("gdal_edit.py -a_nodata {:.10g} {}", value, shell_quoted(file));
@@ -246,7 +256,7 @@ Result<RasterSource> open_raster(const std::string& file, int band, const Crs* o
         return Error{fmt::format("{}: band {} holds complex numbers", file, band)};
     }
 
-    TALUS_TRY(check_raw_size(file, driver, data));
+    TALUS_TRY(check_raw_size(file, data));
 
     OGRSpatialReference reference;
     if (const OGRSpatialReference* stated = data.GetSpatialRef()) reference = *stated;

@@ -171,7 +171,7 @@ Result<std::vector<fs::path>> files_of(const fs::path& file) {
             file.string(), format)};
     }
     std::vector<fs::path> all = {file};
-    const GDALDatasetUniquePtr data(GDALDataset::Open(file.c_str(), GDAL_OF_RASTER | GDAL_OF_VECTOR));
+    const GDALDatasetUniquePtr data = open_as_identified(file.string(), GDAL_OF_RASTER | GDAL_OF_VECTOR);
     if (!data) return all;
     const CPLStringList listed(data->GetFileList());
     for (int k = 0; k < listed.size(); ++k) {

@@ -1,8 +1,11 @@
 #pragma once
 
 #include <filesystem>
+#include <string>
+#include <vector>
 
 #include "core/result.hpp"
+#include "geo/foreign.hpp"
 #include "geo/zip_archive.hpp"
 #include "scene/scene.hpp"
 
@@ -25,10 +28,31 @@ struct Packed {
 [[nodiscard]] Result<Packed> write_bundle(const std::filesystem::path& scene_file,
                                           const std::filesystem::path& archive);
 
-/// Unpacks an archive into `folder` and returns its scene file: the only .toml file at the top of it, or of its only
-/// folder. Errors: as unpack_zip; no scene, several; a scene that names a file outside the archive.
-[[nodiscard]] Result<std::filesystem::path> unpack_bundle(const std::filesystem::path& archive,
-                                                          const std::filesystem::path& folder,
-                                                          const geo::ZipLimits& limits = {});
+/// A file of an archive that was written again (geo/foreign.hpp), with what belonged to it in the archive.
+struct OriginalInput {
+    std::string file;               ///< as the scene names it now
+    std::vector<InputFile> before;  ///< of the archive; `role`: "", or what follows the file's own, " (.dbf)"
+};
+
+struct Unpacked {
+    std::filesystem::path scene;  ///< FOLDER/NAME.toml
+    std::vector<OriginalInput> originals;
+};
+
+/// Unpacks an archive into `folder`: its scene file, the only .toml file at the top of it or of its only folder, and
+/// below data/ the files that it names, read once by a process of their own and written again. Nothing else remains.
+/// Errors: as unpack_zip and convert_foreign; no scene, several; a scene that names a file outside the archive; a
+/// variant that names one which the scene does not.
+[[nodiscard]] Result<Unpacked> unpack_bundle(const std::filesystem::path& archive, const std::filesystem::path& folder,
+                                             const geo::ZipLimits& limits = {}, const geo::ForeignReader& reader = {});
+
+/// Names the files of the archive in place of those written again, among the inputs and in the values: a manifest and
+/// a journal name what their reader has. Nothing can be loaded by these names.
+void name_originals(Scene& scene, const std::vector<OriginalInput>& originals);
+
+/// Overrides of a session that somebody else may have saved: they name no file that the scene, with or without one of
+/// its variants, does not name itself. Errors: they do; as parse_scene.
+[[nodiscard]] Status check_saved_overrides(const std::filesystem::path& scene_file,
+                                           const std::vector<std::string>& overrides);
 
 }  // namespace talus::scene

@@ -9,7 +9,6 @@
 #include <fmt/ranges.h>
 
 #include "core/try.hpp"
-#include "geo/mesh.hpp"
 #include "geo/vector.hpp"
 #include "geo/zip_archive.hpp"
 #include "scene/bundle.hpp"
@@ -87,6 +86,19 @@ Result<fs::path> only_file(const std::string& name, const fs::path& folder) {
                              found.size(), found[0].filename().string(), found[1].filename().string())};
 }
 
+geo::ForeignWanted wanted_for(std::string_view role) {
+    geo::ForeignWanted wanted;
+    wanted.raster = role == "terrain" || role == "release";
+    wanted.vector = role == "release" || role == "buildings";
+    wanted.mesh = role == "buildings";
+    wanted.picture = role == "orthophoto";
+    wanted.purpose = role == "buildings"
+                         ? "holds no polygons; buildings are a GeoPackage, GeoJSON, zipped Shapefile, or a mesh"
+                     : role == "release" ? "is no raster of thickness and no layer of polygons"
+                                         : "is no raster; a GeoTIFF is one, and other formats that GDAL reads are";
+    return wanted;
+}
+
 }  // namespace
 
 std::string upload_name_of(const std::string& name) {
@@ -130,68 +142,62 @@ const Draft::Upload* Draft::find(std::string_view role) const {
     return found == uploads_.end() ? nullptr : &found->second;
 }
 
-Result<Draft::Upload> Draft::unpack(std::string_view role, const std::string& name, const fs::path& upload,
-                                    const fs::path& to) const {
-    Upload made{name, {}, 0, geo::FileKind::other};
+/// The file to read, somewhere below `to`.
+Result<fs::path> Draft::unpack(const std::string& name, const fs::path& upload, const fs::path& to) const {
+    if (is_zip(name)) {
+        TALUS_TRY(geo::unpack_zip(upload, to, {bytes_left(), limits_.files}));
+        return only_file(name, to);
+    }
+    if (is_companion(name) || lower_case(fs::path(name).extension().string()) == ".shp") {
+        return Error{name + ": is one of several files that belong together; pack all of them in one ZIP archive"};
+    }
     std::error_code error;
-    if (is_zip(name) || role == "bundle") {
-        const geo::ZipLimits limits{bytes_left(), limits_.files};
-        if (role == "bundle") {
-            TALUS_ASSIGN(made.file, scene::unpack_bundle(upload, to, limits));
-        } else {
-            TALUS_TRY(geo::unpack_zip(upload, to, limits));
-            TALUS_ASSIGN(made.file, only_file(name, to));
-        }
+    const fs::path file = to / upload_name_of(name);
+    fs::create_directories(to, error);
+    if (!error) fs::rename(upload, file, error);
+    if (error) return Error{name + ": cannot be kept; is the disk full?"};
+    return file;
+}
+
+Result<Draft::Upload> Draft::convert(std::string_view role, const std::string& name, const fs::path& upload,
+                                     const fs::path& to, geo::ForeignReader reader) const {
+    Upload made{name, {}, 0, geo::FileKind::other};
+    const std::uint64_t most = bytes_left();
+    if (role == "bundle") {
+        TALUS_ASSIGN(auto unpacked, scene::unpack_bundle(upload, to, {most, limits_.files}, reader));
+        made.file = std::move(unpacked.scene);
     } else {
-        if (is_companion(name) || lower_case(fs::path(name).extension().string()) == ".shp") {
-            return Error{name + ": is one of several files that belong together; pack all of them in one ZIP archive"};
-        }
-        made.file = to / upload_name_of(name);
+        const fs::path foreign = folder_ / "foreign";
+        TALUS_ASSIGN(const fs::path file, unpack(name, upload, foreign));
+        geo::ForeignWanted wanted = wanted_for(role);
+        wanted.cells = role == "orthophoto" ? largest_photo : limits_.cells;
+        std::error_code error;
         fs::create_directories(to, error);
-        if (!error) fs::rename(upload, made.file, error);
-        if (error) return Error{name + ": cannot be kept; is the disk full?"};
+        std::string stem = upload_name_of(file.filename().string());
+        stem.resize(std::min(stem.size(), stem.find('.')));
+        TALUS_ASSIGN(const auto converted, geo::convert_foreign(file, wanted, to / stem, reader));
+        made.file = converted.file;
+        made.kind = converted.kind;
+        fs::remove_all(foreign, error);
     }
     made.bytes = bytes_in(to);
-    return made;
+    if (made.bytes <= most) return Result<Upload>(std::move(made));
+    return Error{fmt::format("{}: unpacked, the files of this scene are longer than {:.4g} MB", name,
+                             static_cast<double>(limits_.bytes) / 1e6)};
 }
 
-Status Draft::check_kind(std::string_view role, Upload& upload) const {
-    if (role == "bundle") return {};
-    const std::string file = upload.file.string();
-    if (role == "buildings" && geo::is_mesh_file(file)) return {};
-    const auto kind = geo::kind_of(file);
-    if (!kind) return kind.error();
-    upload.kind = *kind;
-    if (upload.kind == geo::FileKind::vector && (role == "release" || role == "buildings")) return {};
-    if (role == "buildings") {
-        return Error{upload.name +
-                     ": holds no polygons; buildings are a GeoPackage, GeoJSON, zipped Shapefile, or a mesh"};
-    }
-    const auto facts = geo::raster_facts(file);
-    if (!facts) {
-        return Error{fmt::format("{}: is no raster{}", upload.name,
-                                 role == "release" ? " of thickness and no layer of polygons"
-                                                   : "; a GeoTIFF is one, and other formats that GDAL reads are")};
-    }
-    upload.kind = geo::FileKind::raster;
-    const double cells = static_cast<double>(facts->columns) * facts->rows;
-    const double most = role == "orthophoto" ? largest_photo : limits_.cells;
-    if (cells <= most) return {};
-    return Error{fmt::format("{}: has {} x {} cells, at most {:.6g} million can be; cut it to the part that matters",
-                             upload.name, facts->columns, facts->rows, most / 1e6)};
-}
-
-Status Draft::take(std::string_view role, const std::string& name, const fs::path& upload) {
+Status Draft::take(std::string_view role, const std::string& name, const fs::path& upload,
+                   const geo::ForeignReader& reader) {
     const fs::path place = folder_ / "data" / role, fresh = folder_ / "fresh";
     std::error_code ignored;
     const auto without = [&](const Error& error) {
         fs::remove_all(fresh, ignored);
+        fs::remove_all(folder_ / "foreign", ignored);
         fs::remove(upload, ignored);
         return Error{plain(error.message)};
     };
-    auto made = unpack(role, name, upload, fresh);
+    auto made = convert(role, name, upload, fresh, reader);
     if (!made) return without(made.error());
-    if (const Status good = check_kind(role, *made); !good) return without(good.error());
     std::error_code error;
     fs::remove_all(place, ignored);
     fs::rename(fresh, place, error);
@@ -297,7 +303,7 @@ std::string Draft::plain(std::string message) const {
     for (const std::string& role :
          {std::string("/data/terrain"), std::string("/data/release"), std::string("/data/buildings"),
           std::string("/data/orthophoto"), std::string("/data/drawn"), std::string("/data"), std::string("/fresh"),
-          std::string()}) {
+          std::string("/foreign"), std::string()}) {
         const std::string part = folder_.string() + role + "/";
         for (std::size_t at; (at = message.find(part)) != std::string::npos;) message.erase(at, part.size());
     }

@@ -13,6 +13,7 @@
 
 #include "core/grid.hpp"
 #include "core/result.hpp"
+#include "geo/foreign.hpp"
 #include "geo/mend_raster.hpp"
 #include "geo/raster.hpp"
 #include "scene/new_scene.hpp"
@@ -26,7 +27,8 @@ struct UploadLimits {
     double cells = 5e7;                            ///< of a terrain or of a raster of thickness
 };
 
-/// A scene that is being made from uploaded files, in a folder of its own: `data/ROLE/FILE`. It becomes a scene all at
+/// A scene that is being made from uploaded files, in a folder of its own: `data/ROLE/FILE`. Each file is read once, by
+/// a process of its own, and written again (geo/foreign.hpp); nothing else of it is opened. It becomes a scene all at
 /// once, by a change of the folder's name. Not for several threads at once; reading a terrain takes seconds.
 class Draft {
   public:
@@ -47,9 +49,10 @@ class Draft {
     [[nodiscard]] std::uint64_t bytes_left() const;
 
     /// Takes a file that has come whole, `upload`, which is gone afterwards. `name`: as it was called; of an archive
-    /// the one file of the role's kind in it. Errors: nothing of that kind, beyond the limits; then the former one
-    /// stays.
-    [[nodiscard]] Status take(std::string_view role, const std::string& name, const std::filesystem::path& upload);
+    /// the one file of the role's kind in it. Errors: nothing of that kind, beyond the limits, as convert_foreign; then
+    /// the former one stays.
+    [[nodiscard]] Status take(std::string_view role, const std::string& name, const std::filesystem::path& upload,
+                              const geo::ForeignReader& reader);
     void remove(std::string_view role);
     /// Of the terrain; in place of what was to be mended before. Errors: no terrain, as geo::mend_raster; then nothing
     /// changes.
@@ -73,14 +76,16 @@ class Draft {
   private:
     struct Upload {
         std::string name;            ///< as it was called
-        std::filesystem::path file;  ///< the one to open
+        std::filesystem::path file;  ///< as it was written again
         std::uint64_t bytes = 0;
         geo::FileKind kind = geo::FileKind::other;
     };
     Draft(std::filesystem::path folder, const UploadLimits& limits) : folder_(std::move(folder)), limits_(limits) {}
-    [[nodiscard]] Result<Upload> unpack(std::string_view role, const std::string& name,
-                                        const std::filesystem::path& upload, const std::filesystem::path& to) const;
-    [[nodiscard]] Status check_kind(std::string_view role, Upload& upload) const;
+    [[nodiscard]] Result<std::filesystem::path> unpack(const std::string& name, const std::filesystem::path& upload,
+                                                       const std::filesystem::path& to) const;
+    [[nodiscard]] Result<Upload> convert(std::string_view role, const std::string& name,
+                                         const std::filesystem::path& upload, const std::filesystem::path& to,
+                                         geo::ForeignReader reader) const;
     void read_terrain();
     [[nodiscard]] const Upload* find(std::string_view role) const;
     [[nodiscard]] std::filesystem::path dem() const;

@@ -121,11 +121,13 @@ class Drafts::Taking : public Intake {
         drafts_.worker_->post([this, piece = std::move(piece), then = std::move(then)] { then(write(piece)); });
     }
     void finish(const Respond& respond) override {
-        drafts_.worker_->post([this, respond] {
+        drafts_.worker_->post([this, respond, stop = drafts_.begin_reading(role_)] {
             out_.close();
             Draft* draft = drafts_.find(id_, respond);
             if (draft == nullptr) return;
-            if (const Status taken = draft->take(role_, name_, part_); !taken) {
+            geo::ForeignReader reader = drafts_.reader_;
+            reader.shall_end = [stop] { return stop->load(); };
+            if (const Status taken = draft->take(role_, name_, part_, reader); !taken) {
                 return respond(problem(taken.error().message));
             }
             respond(json_response(200, draft->describe()));
@@ -162,12 +164,30 @@ class Drafts::Taking : public Intake {
     std::ofstream out_;
 };
 
-Drafts::Drafts(fs::path library, UploadLimits limits, fs::path temporary)
-    : library_(std::move(library)), temporary_(std::move(temporary)), limits_(limits) {
+Drafts::Drafts(fs::path library, UploadLimits limits, fs::path temporary, geo::ForeignReader reader)
+    : library_(std::move(library)), temporary_(std::move(temporary)), limits_(limits), reader_(std::move(reader)) {
     worker_->post([this] { remove_leftovers(); });
 }
 
+Drafts::Stop Drafts::begin_reading(const std::string& role) {
+    stop_reading(role);  // of the one that this one replaces
+    auto stop = std::make_shared<std::atomic<bool>>(false);
+    const std::lock_guard lock(mutex_);
+    std::erase_if(readings_, [](const auto& reading) { return reading.second.expired(); });
+    readings_.emplace_back(role, stop);
+    return stop;
+}
+
+void Drafts::stop_reading(const std::string& role) {
+    const std::lock_guard lock(mutex_);
+    for (const auto& [of, reading] : readings_) {
+        const Stop stop = role.empty() || of == role ? reading.lock() : nullptr;
+        if (stop) *stop = true;
+    }
+}
+
 Drafts::~Drafts() {
+    stop_reading();
     worker_.reset();
 }
 
@@ -187,6 +207,7 @@ Draft* Drafts::find(const std::string& id, const Respond& respond) {
 }
 
 void Drafts::begin(const Respond& respond) {
+    stop_reading();
     worker_->post([this, respond] {
         draft_.reset();
         auto id = random_token();
@@ -206,6 +227,7 @@ void Drafts::describe(const std::string& id, const Respond& respond) {
 }
 
 void Drafts::discard(const std::string& id, const Respond& respond) {
+    stop_reading();
     worker_->post([this, id, respond] {
         if (find(id, respond) == nullptr) return;
         draft_.reset();
@@ -218,6 +240,7 @@ std::shared_ptr<Intake> Drafts::intake(const Request& request) {
 }
 
 void Drafts::remove(const std::string& id, const std::string& role, const Respond& respond) {
+    stop_reading(role);
     worker_->post([this, id, role, respond] {
         Draft* draft = find(id, respond);
         if (draft == nullptr) return;

@@ -1,9 +1,12 @@
 #pragma once
 
+#include <atomic>
 #include <filesystem>
 #include <memory>
 #include <mutex>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "serve/draft.hpp"
 #include "serve/message.hpp"
@@ -16,7 +19,9 @@ namespace talus::serve {
 class Drafts {
   public:
     /// `library`: the start page's folder; drafts are below `drafts`, what a program that died left there is removed.
-    Drafts(std::filesystem::path library, UploadLimits limits, std::filesystem::path temporary);
+    /// `reader`: of what is uploaded.
+    Drafts(std::filesystem::path library, UploadLimits limits, std::filesystem::path temporary,
+           geo::ForeignReader reader);
     ~Drafts();
     Drafts(const Drafts&) = delete;
     Drafts& operator=(const Drafts&) = delete;
@@ -38,12 +43,20 @@ class Drafts {
 
   private:
     class Taking;
+    using Stop = std::shared_ptr<std::atomic<bool>>;
+    /// Ends the reading of what was uploaded, now or when its turn comes: a file may be made to be read without end.
+    /// Empty: of all roles.
+    void stop_reading(const std::string& role = "");
+    [[nodiscard]] Stop begin_reading(const std::string& role);
     /// The draft of this id; answers otherwise. On the worker's thread.
     [[nodiscard]] Draft* find(const std::string& id, const Respond& respond);
     void remove_leftovers() const;
 
     const std::filesystem::path library_, temporary_;
     const UploadLimits limits_;
+    const geo::ForeignReader reader_;
+    std::mutex mutex_;  // guards the following
+    std::vector<std::pair<std::string, std::weak_ptr<std::atomic<bool>>>> readings_;
     std::string id_;  // used by the worker's thread only, as the following
     std::unique_ptr<Draft> draft_;
     int uploads_ = 0;

@@ -42,6 +42,7 @@ struct StartSettings {
     std::function<void()> on_quit;  ///< the user ends the program in the page
     UploadLimits uploads{};         ///< of a new scene
     std::filesystem::path program;  ///< talus itself, for jobs; empty: there are none
+    geo::ForeignReader reader{};    ///< of files that are uploaded
 };
 
 /// A session that users and programs access over HTTP and WebSocket, as described in docs/protocol.md. Runs on its own

@@ -8,6 +8,7 @@
 
 #include "core/try.hpp"
 #include "scene/builtin.hpp"
+#include "scene/bundle.hpp"
 #include "serve/api.hpp"
 #include "serve/json_text.hpp"
 #include "twin/json_keys.hpp"
@@ -56,7 +57,7 @@ Start::Start(StartSettings settings, ServerOptions options, Host host)
       options_(std::move(options)),
       host_(std::move(host)),
       library_(settings_.folder),
-      drafts_(std::make_unique<Drafts>(settings_.folder, settings_.uploads, options_.export_folder)),
+      drafts_(std::make_unique<Drafts>(settings_.folder, settings_.uploads, options_.export_folder, settings_.reader)),
       jobs_(std::make_unique<Jobs>(settings_.folder / "jobs", settings_.program)) {}
 
 Start::~Start() {
@@ -277,6 +278,7 @@ Result<Start::Loaded> Start::load_scene(const KnownScene& known, const std::vect
     if (builtin) {
         TALUS_ASSIGN(file, scene::unpack_builtin_scene(unpacked));
     }
+    TALUS_TRY(scene::check_saved_overrides(file, overrides));
     TALUS_ASSIGN(auto scene, scene::load_scene(file, overrides));
     leave_out_zoom(scene, "the live twin");
     if (builtin)

@@ -8,6 +8,8 @@
 #include <gmock/gmock.h>
 
 #include "scene/scene_folder.hpp"
+#include "support/foreign.hpp"
+#include "support/witness.hpp"
 
 namespace talus::scene {
 namespace {
@@ -39,7 +41,8 @@ class Bundle : public SceneFolder {
         write("scene.zip", bytes);
     }
     [[nodiscard]] std::string refusal(const geo::ZipLimits& limits = {}) const {
-        const auto scene = unpack_bundle(archive(), unpacked(), limits);
+        const auto scene = unpack_bundle(archive(), unpacked(), limits, test::foreign_reader());
+        EXPECT_TRUE(scene || !fs::exists(unpacked())) << "something remains";
         return scene ? "(it was unpacked)" : scene.error().message;
     }
     void pack(const std::vector<geo::ZipEntry>& entries) const {
@@ -53,19 +56,26 @@ TEST_F(Bundle, HoldsTheSceneAndItsFilesWithOtherPaths) {
     const auto packed = write_bundle(folder / "scene.toml", archive());
     ASSERT_TRUE(packed) << packed.error().message;
     EXPECT_EQ(packed->files, 2U);
-    const auto scene = unpack_bundle(archive(), unpacked());
-    ASSERT_TRUE(scene) << scene.error().message;
-    const std::string text = text_of(*scene);
+    const auto bundle = unpack_bundle(archive(), unpacked(), {}, test::foreign_reader());
+    ASSERT_TRUE(bundle) << bundle.error().message;
+    const std::string text = text_of(bundle->scene);
     EXPECT_THAT(text, HasSubstr("file = \"data/dem.tif\""));
-    EXPECT_THAT(text, HasSubstr("file = \"data/release.geojson\""));
+    EXPECT_THAT(text, HasSubstr("file = \"data/release.gpkg\""));
+    EXPECT_FALSE(fs::exists(unpacked() / "archive"));
     EXPECT_THAT(text, HasSubstr("title = \"Schön\"  # a remark"));
 
-    const auto before = load_scene(folder / "scene.toml"), after = load_scene(*scene);
+    const auto before = load_scene(folder / "scene.toml");
+    auto after = load_scene(bundle->scene);
     ASSERT_TRUE(before && after);
+    EXPECT_EQ(before->terrain.elevation().values, after->terrain.elevation().values);
+    EXPECT_EQ(total_volume(*before), total_volume(*after));
+    name_originals(*after, bundle->originals);
     ASSERT_EQ(before->inputs.size(), after->inputs.size());
     for (std::size_t k = 0; k < before->inputs.size(); ++k) {
         if (before->inputs[k].role == "scene") continue;
         EXPECT_EQ(before->inputs[k].hash, after->inputs[k].hash);
+        EXPECT_EQ(before->inputs[k].role, after->inputs[k].role);
+        EXPECT_EQ(fs::path(before->inputs[k].path).filename(), fs::path(after->inputs[k].path).filename());
     }
 }
 
@@ -81,10 +91,10 @@ TEST_F(Bundle, KeepsFilesOfOneNameApart) {
         "\"b/data.tif\"\n");
     const auto packed = write_bundle(folder / "scene.toml", archive());
     ASSERT_TRUE(packed) << packed.error().message;
-    const auto scene = unpack_bundle(archive(), unpacked());
-    ASSERT_TRUE(scene) << scene.error().message;
-    EXPECT_THAT(text_of(*scene), HasSubstr("thickness_raster = \"data/2/data.tif\""));
-    EXPECT_TRUE(fs::exists(unpacked() / "data" / "2" / "data.tif"));
+    const auto bundle = unpack_bundle(archive(), unpacked(), {}, test::foreign_reader());
+    ASSERT_TRUE(bundle) << bundle.error().message;
+    EXPECT_THAT(text_of(bundle->scene), HasSubstr("thickness_raster = \"data/data-2.tif\""));
+    EXPECT_TRUE(fs::exists(unpacked() / "data" / "data-2.tif"));
 }
 
 TEST_F(Bundle, RefusesAVirtualRaster) {
@@ -138,6 +148,40 @@ TEST_F(Bundle, RefusesASceneThatNamesFilesOutside) {
     pack(
         {{"scene.toml", {}, "[terrain]\nfile = \"../dem.tif\"\n[[release]]\nfile = \"r.geojson\"\nthickness_m = 1\n"}});
     EXPECT_THAT(refusal(), HasSubstr("names a file outside the archive"));
+}
+
+TEST_F(Bundle, RefusesAVariantThatNamesWhatTheSceneDoesNot) {
+    write_valley();
+    for (const char* file : {"/etc/hostname", "../../dem.tif", "other.tif", "/vsicurl/http://127.0.0.1:9/a.tif"}) {
+        pack({{"scene.toml",
+               {},
+               std::string("[terrain]\nfile = \"dem.tif\"\n[[release]]\nfile = \"r.geojson\"\nthickness_m = 1\n"
+                           "[[variant]]\nname = \"wet\"\nset = ['terrain.file=\"") +
+                   file + "\"']\n"},
+              {"dem.tif", folder / "dem.tif"},
+              {"other.tif", folder / "dem.tif"},
+              {"r.geojson", folder / "release.geojson"}});
+        const test::Witness witness((folder / "log").string());
+        EXPECT_THAT(refusal(), HasSubstr("variant \"wet\" of its scene names a file that the scene itself does not"));
+        EXPECT_THAT(witness.elsewhere({folder.string()}), testing::IsEmpty());
+    }
+}
+
+TEST_F(Bundle, OverridesOfASavedSessionNameNoFileThatItsSceneDoesNot) {
+    write_valley("[[variant]]\nname = \"other\"\nset = ['terrain.file=\"other.tif\"']\n");
+    const fs::path scene = folder / "scene.toml";
+    EXPECT_TRUE(check_saved_overrides(scene, {}));
+    EXPECT_TRUE(check_saved_overrides(scene, {"material.friction_coefficient=0.3", "terrain.file=dem.tif"}));
+    EXPECT_TRUE(check_saved_overrides(scene, {"variant=other"}));
+    EXPECT_TRUE(check_saved_overrides(scene, {"terrain.file=other.tif"}));
+    for (const char* override_text :
+         {"terrain.file=/etc/hostname", "terrain.file=../x.tif", "terrain.orthophoto=/vsicurl/http://127.0.0.1:9/a.tif",
+          "terrain.file=NETCDF:\"/etc/a.nc\":b", "release.file=${HOME}/a.geojson",
+          "buildings.file=http://127.0.0.1:9/"}) {
+        const Status refused = check_saved_overrides(scene, {override_text});
+        ASSERT_FALSE(refused) << override_text;
+        EXPECT_THAT(refused.error().message, HasSubstr("the session sets a file that its scene does not name"));
+    }
 }
 
 }  // namespace

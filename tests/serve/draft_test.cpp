@@ -9,6 +9,7 @@
 
 #include "geo/zip_archive.hpp"
 #include "serve/start_fixture.hpp"
+#include "support/witness.hpp"
 
 namespace talus::test {
 namespace {
@@ -220,7 +221,7 @@ TEST_F(NewScenePage, what_is_too_large_is_refused) {
     client_ = std::make_unique<HttpClient>(server_->port(), controller);
     ASSERT_EQ(put("release", "a.geojson", read_text(scene_.input("release.geojson")) + std::string(120000, ' ')).status,
               200);
-    EXPECT_EQ(put("terrain", "dem.tif", std::string(90000, 'x')).status, 413);
+    EXPECT_EQ(put("terrain", "dem.tif", std::string(150000, 'x')).status, 413);
     client_ = std::make_unique<HttpClient>(server_->port(), controller);
     Socket chunks(server_->port());
     std::string buffer;
@@ -245,7 +246,7 @@ TEST_F(NewScenePage, what_is_too_large_is_refused) {
     options.columns = 50;
     options.creation_options = {"COMPRESS=DEFLATE"};
     ASSERT_EQ(put_file("terrain", write_plane(scene_.input("large.tif"), options)).status, 200);
-    EXPECT_EQ(kept(), (std::vector<std::string>{"a.geojson", "large.tif"}));
+    EXPECT_EQ(kept(), (std::vector<std::string>{"a.gpkg", "large.tif"}));
 }
 
 TEST_F(NewScenePage, a_broken_upload_leaves_nothing_and_another_draft_takes_the_place) {
@@ -298,6 +299,92 @@ TEST_F(NewScenePage, viewers_upload_nothing_and_what_a_dead_program_left_is_remo
     begin();
     EXPECT_FALSE(fs::exists(folder() / "drafts/999999999-x"));
     EXPECT_TRUE(fs::exists(folder() / fmt::format("drafts/{}-x", getpid())));
+}
+
+/// A GeoPackage whose second layer never ends.
+std::string endless_geopackage(const std::string& file) {
+    VectorOptions options;
+    options.driver = "GPKG";
+    options.layer = "scar";
+    write_vector(file, options, {{rectangle_wkt(824200, 825090, 824220, 825110), {}}});
+    const GDALDatasetUniquePtr data(GDALDataset::Open(file.c_str(), GDAL_OF_VECTOR | GDAL_OF_UPDATE));
+    for (const char* command :
+         {"CREATE VIEW endless AS WITH RECURSIVE n(i) AS (SELECT 1 UNION ALL SELECT i + 1 FROM n) SELECT n.i AS fid, "
+          "scar.geom AS geom FROM n, scar WHERE n.i < 0",
+          "INSERT INTO gpkg_contents (table_name, identifier, data_type, srs_id) SELECT 'endless', 'endless', "
+          "'features', srs_id FROM gpkg_contents WHERE table_name = 'scar'",
+          "INSERT INTO gpkg_geometry_columns SELECT 'endless', column_name, geometry_type_name, srs_id, z, m FROM "
+          "gpkg_geometry_columns WHERE table_name = 'scar'"}) {
+        data->ReleaseResultSet(data->ExecuteSQL(command, nullptr, nullptr));
+    }
+    return file;
+}
+
+TEST_F(NewScenePage, a_file_that_is_read_without_end_blocks_neither_a_new_scene_nor_the_end_of_the_program) {
+    const std::string endless = read_text(endless_geopackage(scene_.input("endless.gpkg")));
+    const auto reading = [&] {  // until its child is at work
+        for (int i = 0; i < 400; ++i) {
+            for (const std::string& name : kept()) {
+                if (name.ends_with(".numbers")) return true;
+            }
+            std::this_thread::sleep_for(Milliseconds(25));
+        }
+        return false;
+    };
+    Answer refused;
+    const auto upload = [&](const std::string& draft) {
+        return std::thread([&, draft] {
+            HttpClient other(server_->port(), controller);
+            refused = other.ask("PUT", draft + "/files/release?name=endless.gpkg", endless);
+        });
+    };
+    std::thread first = upload(draft_);
+    ASSERT_TRUE(reading());
+    const auto begun = std::chrono::steady_clock::now();
+    draft_ = "/api/draft/" + begin();  // in its place
+    first.join();
+    EXPECT_LT(std::chrono::steady_clock::now() - begun, std::chrono::seconds(10));
+    EXPECT_THAT(refused.body, HasSubstr("cancelled"));
+    ASSERT_EQ(put_file("terrain", scene_.input("terrain.tif")).status, 200);
+    // Another one, and the end.
+    std::thread second = upload(draft_);
+    ASSERT_TRUE(reading());
+    const auto ending = std::chrono::steady_clock::now();
+    server_.reset();
+    EXPECT_LT(std::chrono::steady_clock::now() - ending, std::chrono::seconds(10));
+    second.join();
+    EXPECT_EQ(kept(), std::vector<std::string>());
+}
+
+TEST_F(NewScenePage, what_is_uploaded_in_any_role_opens_nothing_else) {
+    write_plane(scene_.input("secret.tif"));
+    fs::create_directories(folder() / "secret");
+    fs::rename(scene_.input("secret.tif"), folder() / "secret/secret.tif");
+    const std::string secret = (folder() / "secret/secret.tif").string();
+    for (const std::string& place : {secret, std::string("/vsicurl/http://127.0.0.9:9/a.tif")}) {
+        const std::string layer = "<OGRVRTDataSource><OGRVRTLayer name=\"a\"><SrcDataSource>" + place +
+                                  "</SrcDataSource></OGRVRTLayer></OGRVRTDataSource>";
+        const std::string text = "ncols 2\nnrows 2\nxllcorner 0\nyllcorner 0\ncellsize 5\n" + layer + "\n1 2\n3 4\n";
+        const std::string scene_text =
+            "[terrain]\nfile = \"dem.asc\"\n[[release]]\nfile = \"dem.asc\"\nthickness_m = 1\n";
+        const std::string bundle = zip({{"scene.toml", {}, scene_text}, {"dem.asc", {}, text}});
+        const std::string variant = zip(
+            {{"scene.toml", {}, scene_text + "[[variant]]\nname = \"a\"\nset = ['terrain.file=\"" + place + "\"']\n"},
+             {"dem.asc", {}, text}});
+        const Witness witness(scene_.input("log"));
+        for (const char* role : {"terrain", "release", "buildings", "orthophoto"}) {
+            // A raster of which some numbers are none; no layer.
+            EXPECT_EQ(put(role, "dem.asc", text).status, role == std::string("buildings") ? 400 : 200) << role;
+            EXPECT_EQ(put(role, "dem.vrt", layer).status, 400) << role;
+            EXPECT_EQ(put(role, "dem.json", layer).status, 400) << role;
+        }
+        EXPECT_EQ(put("bundle", "a.zip", bundle).status, 400);
+        EXPECT_THAT(put("bundle", "a.zip", variant).body, HasSubstr("variant"));
+        EXPECT_THAT(witness.elsewhere({(folder() / "drafts").string(), scene_.input("exports")}),
+                    testing::Each(testing::AnyOf(testing::StartsWith("connect 127.0.0.1"),
+                                                 testing::StartsWith("socket"), HasSubstr("packed.zip"))))
+            << "the test's own client connects to the server";
+    }
 }
 
 TEST(Draft, names_of_uploads_are_plain) {
@@ -369,7 +456,7 @@ TEST_F(NewScenePage, damaged_files_are_refused_in_a_sentence_or_taken_and_harm_n
                           {"release", "scar.geojson", &layer},     {"release", "scar.zip", &shapes},
                           {"buildings", "houses.geojson", &layer}, {"orthophoto", "photo.tif", &tiled}};
     int taken = 0, refused = 0;
-    for (std::uint64_t seed = 0; seed < 40; ++seed) {
+    for (std::uint64_t seed = 0; seed < 12; ++seed) {  // a process for each
         for (const Kind& kind : kinds) {
             SCOPED_TRACE(fmt::format("{} {} seed {}", kind.role, kind.name, seed));
             const Answer answer = put(kind.role, kind.name, damaged(*kind.content, seed));
@@ -385,8 +472,8 @@ TEST_F(NewScenePage, damaged_files_are_refused_in_a_sentence_or_taken_and_harm_n
         const Answer checked = check({{"scar", scar()}, {"thickness_m", 1}});
         ASSERT_TRUE(checked.status == 200 || checked.status == 400) << checked.status << " " << checked.body;
     }
-    EXPECT_GT(taken, 5) << "some of the damage is where nobody looks";
-    EXPECT_GT(refused, 100);
+    EXPECT_GT(taken, 3) << "some of the damage is where nobody looks";
+    EXPECT_GT(refused, 30);
     std::uintmax_t bytes = 0;
     for (const auto& entry : fs::recursive_directory_iterator(folder() / "drafts")) {
         if (entry.is_regular_file()) bytes += entry.file_size();

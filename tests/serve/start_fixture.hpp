@@ -14,6 +14,7 @@
 #include "serve/client.hpp"
 #include "serve/library.hpp"
 #include "serve/server.hpp"
+#include "support/foreign.hpp"
 
 namespace talus::test {
 
@@ -38,7 +39,7 @@ class StartPage : public ::testing::Test {
         options.export_folder = scene_.folder() / "exports";
         auto server = serve::Server::listen(std::move(options));
         ASSERT_TRUE(server) << server.error().message;
-        (*server)->start({folder(), file, on_quit_, limits_, program_});
+        (*server)->start({folder(), file, on_quit_, limits_, program_, foreign_reader()});
         server_ = std::move(*server);
     }
     [[nodiscard]] std::filesystem::path folder() const { return scene_.folder() / "data"; }
