@@ -11,6 +11,7 @@
 #include "core/hash.hpp"
 #include "ensemble/plan.hpp"
 #include "ensemble/run_record.hpp"
+#include "foreign_targets.hpp"
 #include "geo/json_text.hpp"
 #include "geo/mesh.hpp"
 #include "scene/hydrograph.hpp"
@@ -237,6 +238,10 @@ constexpr std::array all = {Target{"scene_toml", scene_toml},
                             Target{"actions", actions},
                             Target{"run_record", run_record},
                             Target{"run_record_file", run_record_file},
+                            Target{"upload", upload},
+                            Target{"bundle", bundle},
+                            Target{"session_file", session_file},
+                            Target{"draft_setup", draft_setup},
                             Target{"http", http},
                             Target{"websocket", websocket}};
 
