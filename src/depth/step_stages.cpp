@@ -90,7 +90,7 @@ HWY_INLINE Resistance<L> resistance_at(const StageData& data, std::ptrdiff_t i, 
         r.inverse_turbulence = r.inverse_turbulence * sim::cube_root(L(data.turbulent_thickness) / thickness);
     }
     r.stem_drag = known(data.cover.stem_drag, 0);
-    r.viscosity = L(data.viscosity);
+    r.viscosity = known(data.cover.viscosity, data.viscosity);
     return r;
 }
 
