@@ -139,13 +139,15 @@ std::string summary_text(const scene::Scene& scene, const run::RunResult& result
     }
     for (const params::ObservationSpec& observed : scene.spec.observations) {
         const observe::FrontSample front = front_at(seen, observed.chainage);
-        const std::string computed = report::outside_zoom(scene, result, observed.chainage) ? "outside the zoom"
-                                     : std::isnan(front.arrival_time)
-                                         ? "not reached"
-                                         : fmt::format("{}, debris there {}", speed_text(front.front_velocity),
-                                                       speed_text(front.particle_speed));
-        text += line("front velocity", fmt::format("at {:g} m: {}; observed {:g} m/s", observed.chainage, computed,
-                                                   observed.front_velocity));
+        const std::string computed =
+            report::outside_zoom(scene, result, observed.chainage) ? "outside the zoom"
+            : std::isnan(front.arrival_time)                       ? "not reached"
+            : observed.debris_speed
+                ? fmt::format("{}, front {}", speed_text(front.particle_speed), speed_text(front.front_velocity))
+                : fmt::format("{}, debris there {}", speed_text(front.front_velocity),
+                              speed_text(front.particle_speed));
+        text += line(observed.debris_speed ? "debris speed" : "front velocity",
+                     fmt::format("at {:g} m: {}; observed {:g} m/s", observed.chainage, computed, observed.value()));
     }
     if (const observe::RunOut& r = seen.run_out; std::isfinite(r.along_flow)) {
         text += line("run-out", fmt::format("{}{:.0f} m along the flow, {:.0f} m straight, drop {:.0f} m, runout angle "
@@ -190,7 +192,8 @@ std::string summary_json(const scene::Scene& scene, const run::RunResult& result
         const observe::FrontSample front = front_at(seen, observed.chainage);
         observations.push_back({{"name", observed.name},
                                 {"chainage_m", observed.chainage},
-                                {"observed_front_velocity_mps", observed.front_velocity},
+                                {"quantity", observed.key()},
+                                {"observed_mps", observed.value()},
                                 {"front_velocity_mps", number_or_null<nlohmann::ordered_json>(front.front_velocity)},
                                 {"particle_speed_mps", number_or_null<nlohmann::ordered_json>(front.particle_speed)},
                                 {"arrival_time_s", number_or_null<nlohmann::ordered_json>(front.arrival_time)}});

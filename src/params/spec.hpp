@@ -305,13 +305,19 @@ struct ZoomSpec {
 /// `[[observation]]`: a front velocity measured in the field.
 struct ObservationSpec {
     std::string name;
-    double chainage = 0;        ///< m along the flow path
-    double front_velocity = 0;  ///< m/s
+    double chainage = 0;                                 ///< m along the flow path
+    std::optional<double> front_velocity, debris_speed;  ///< m/s; one of them
     std::string source;
-    std::optional<double> uncertainty = {};  ///< m/s, one standard deviation; absent: a fifth of the velocity
+    std::optional<double> uncertainty = {};  ///< m/s, one standard deviation; absent: a fifth of the value
 
     /// m/s
-    [[nodiscard]] double standard_deviation() const { return uncertainty.value_or(front_velocity / 5); }
+    [[nodiscard]] double value() const { return debris_speed ? *debris_speed : front_velocity.value_or(0); }
+    /// m/s
+    [[nodiscard]] double standard_deviation() const { return uncertainty.value_or(value() / 5); }
+    /// "Front velocity" or "Debris speed".
+    [[nodiscard]] const char* quantity() const { return debris_speed ? "Debris speed" : "Front velocity"; }
+    /// The same as part of a key.
+    [[nodiscard]] const char* key() const { return debris_speed ? "debris_speed" : "front_velocity"; }
 };
 
 /// `[[superelevation]]`: marks on both sides of a bend, from which the velocity follows.

@@ -82,9 +82,8 @@ json compared(const scene::Scene& scene, const run::RunResult& particles, const 
         if (std::find(told.begin(), told.end(), observed.chainage) != told.end()) continue;
         told.push_back(observed.chainage);
         const std::string at = fmt::format(" at {} m", report::plain(observed.chainage));
-        rows.add("front_velocity", "Front velocity" + at, "m/s", 1, [&](const auto& o) {
-            return front_at(o, observed.chainage).front_velocity;
-        })["observed"] = observed.front_velocity;
+        rows.add(observed.key(), observed.quantity() + at, "m/s", 1,
+                 [&](const auto& o) { return computed_for(observed, o); })["observed"] = observed.value();
         rows.add("front_arrival", "Front arrival" + at, "s", 1,
                  [&](const auto& o) { return front_at(o, observed.chainage).arrival_time; });
     }
