@@ -13,6 +13,7 @@
 #include "products/results_json.hpp"
 #include "report/results.hpp"
 #include "run/verdict.hpp"
+#include "run/words.hpp"
 #include "sim/compression.hpp"
 #include "variant_plan.hpp"
 #include "zoom_text.hpp"
@@ -81,8 +82,8 @@ std::string remedy(const params::SolverSpec& solver) {
 
 std::string moving_text(const run::StillMoving& moving, double deposited_speed) {
     if (!(moving.volume > 0)) return fmt::format("nothing faster than {:.3g} m/s", deposited_speed);
-    return fmt::format("{:.3g} m3 ({:.3g} % of the debris), at up to {:.2g} m/s", moving.volume, 100 * moving.share,
-                       moving.greatest_speed);
+    return fmt::format("{} m3 ({} % of the debris), at up to {} m/s", run::rounded(moving.volume, 3),
+                       run::rounded(100 * moving.share, 3), run::rounded(moving.greatest_speed, 2));
 }
 
 std::string line(const char* label, const std::string& text) {
@@ -90,8 +91,8 @@ std::string line(const char* label, const std::string& text) {
 }
 
 std::string verdict_text(const scene::Scene& scene, const run::RunVerdict& verdict) {
-    if (verdict.within_limits()) return line("verdict", verdict.text());
-    std::string text = line("VERDICT", verdict.text());
+    if (verdict.within_limits()) return line("verdict", run::uncapitalised(verdict.text()));
+    std::string text = line("VERDICT", run::uncapitalised(verdict.text()));
     for (const run::Check& check : verdict.checks) {
         if (check.state != run::CheckState::beyond) continue;
         text += line("", check.text + (check.key == "compression" ? remedy(scene.spec.solver) : ""));

@@ -13,6 +13,7 @@
 #include "observe/peaks.hpp"
 #include "report/hazard_map.hpp"
 #include "report/number_text.hpp"
+#include "run/words.hpp"
 #include "sim/compression.hpp"
 
 namespace talus::report {
@@ -93,11 +94,14 @@ Json status(const run::RunResult& result, const run::RunVerdict& verdict) {
 }
 
 Json beyond_limits(const run::RunVerdict& verdict) {
-    return verdict.within_limits() ? Json() : Json(verdict.text());
+    return verdict.within_limits() ? Json() : Json(run::uncapitalised(verdict.text()));
 }
 
 Json named_verdict(std::string_view name, const Json& verdict) {
-    Json shown = {{"name", name}, {"within_limits", verdict["within_limits"]}, {"checks", Json::array()}};
+    const std::string limits = verdict["within_limits"].get<bool>() ? "within limits" : "beyond limits";
+    Json shown = {{"heading", name.empty() ? run::capitalised(limits) : fmt::format("{}: {}", name, limits)},
+                  {"within_limits", verdict["within_limits"]},
+                  {"checks", Json::array()}};
     for (const Json& check : verdict["checks"]) {
         // The depth-averaged model has no such thing.
         if (check["key"] == "compression" && check["state"] == "not_measured") continue;

@@ -169,12 +169,16 @@ Json parameter_table(const scene::Scene& scene, bool set) {
         // Printed in full elsewhere: at the top, under Assumptions, beside the computed front velocities.
         if (section.name == "scene" || section.name == "report" || section.name == "observation") return;
         if (is_set(scene, section, index, parameter, value) != set) return;
-        const bool unused = !uses_particles(scene) && scene::for_particles_only(key_path(section, index, parameter));
+        const std::string key = key_path(section, index, parameter);
+        const bool unused =
+            uses_particles(scene) ? !scene.zoom && scene::for_depth_averaged_only(key) : scene::for_particles_only(key);
         if (unused && !set) return;
         Json row = {{"key", parameter.key},
                     {"value", shown(parameter, value)},
                     {"unit", parameter.unit},
-                    {"help", unused ? "Not used by the depth-averaged model." : parameter.help}};
+                    {"help", !unused                 ? parameter.help
+                             : uses_particles(scene) ? "Used by the depth-averaged model only."
+                                                     : "Not used by the depth-averaged model."}};
         if (const std::string heading = heading_of(section, index); heading != open) {
             row["heading"] = open = heading;
             row["heading_note"] = index == 0 ? section.help : "";
@@ -266,6 +270,7 @@ Json method(const scene::Scene& scene) {
              has_pore_pressure(scene.spec) ? Json{{"decay_time_s", given(material.pore_pressure_decay_time)}} : Json()},
             {"inertial_friction", material.inertial_friction_coefficient.has_value()},
             {"viscosity_on_ground", static_cast<bool>(material.viscosity_on_ground)},
+            {"flight", scene.spec.solver.flight},
             {"stems", any_zone([](const params::ZoneSpec& zone) { return zone.stem_density > 0; })},
             {"nets", std::any_of(all_barriers.begin(), all_barriers.end(),
                                  [](const params::BarrierSpec& b) { return b.passing_share.has_value(); })},

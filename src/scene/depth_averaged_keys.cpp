@@ -124,8 +124,8 @@ constexpr std::array keys = {
     DepthAveragedKey{"solver.thread_count", used, ""},
     DepthAveragedKey{"solver.backend", noted, ""},
     DepthAveragedKey{"solver.model", used, ""},
-    DepthAveragedKey{"solver.grid_cell_m", used, ""},
-    DepthAveragedKey{"solver.flight", used, ""},
+    DepthAveragedKey{"solver.grid_cell_m", own, ""},
+    DepthAveragedKey{"solver.flight", own, ""},
     DepthAveragedKey{"outputs.map_cell_m", noted, ""},
     DepthAveragedKey{"outputs.sample_interval_s", used, ""},
     DepthAveragedKey{"outputs.chainage_interval_m", used, ""},
@@ -182,6 +182,11 @@ const DepthAveragedKey* depth_averaged_key(std::string_view key) {
 bool for_particles_only(std::string_view key) {
     const DepthAveragedKey* entry = depth_averaged_key(key);
     return entry != nullptr && entry->use == noted;
+}
+
+bool for_depth_averaged_only(std::string_view key) {
+    const DepthAveragedKey* entry = depth_averaged_key(key);
+    return entry != nullptr && entry->use == own;
 }
 
 }  // namespace talus::scene
