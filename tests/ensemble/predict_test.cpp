@@ -34,7 +34,9 @@ class PredictTest : public testing::Test {
 
 TEST_F(PredictTest, FrontAndArrivalAreThoseOfTheFront) {
     run.front = {{10, 2, 5, 8}, {12, 3, 7, 9}};
-    params::ObservationSpec front{.chainage = 11, .front_velocity = 6}, debris{.chainage = 11, .debris_speed = 6};
+    params::ObservationSpec front, debris;
+    front.chainage = debris.chainage = 11;
+    front.front_velocity = debris.debris_speed = 6;
     EXPECT_DOUBLE_EQ(computed_for(front, run), 6);
     EXPECT_DOUBLE_EQ(computed_for(debris, run), 8.5);
     EXPECT_DOUBLE_EQ(predict_debris_speed(run, 11), 8.5);

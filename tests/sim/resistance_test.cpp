@@ -5,6 +5,7 @@
 
 #include <gtest/gtest.h>
 
+#include "sim/physics/columns.hpp"
 #include "sim/physics/stress.hpp"
 #include "sim/physics/viscosity.hpp"
 #include "sim_fixtures.hpp"
