@@ -105,7 +105,7 @@ TEST(DebrisFlume, lets_debris_through_while_its_gate_still_opens) {
     ASSERT_EQ(at_once.size(), 2);
     for (std::size_t model = 0; model < 2; ++model) {
         EXPECT_GT(at_once[model], 0.3);
-        EXPECT_LT(at_once[model], 0.6);
+        EXPECT_LT(at_once[model], 0.8);
         EXPECT_GT(slowly[model], at_once[model] + 0.04);
         EXPECT_LT(slowly[model], at_once[model] + 0.425) << "half of its opening";
     }
