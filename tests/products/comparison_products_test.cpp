@@ -93,7 +93,7 @@ TEST_F(ComparisonProducts, NothingIsSaidOfThemWithoutVariants) {
 }
 
 TEST_F(ComparisonProducts, ConvergenceUnknownIsNotCalledConverged) {
-    EXPECT_THAT(page(), HasSubstr("<dd class=\"beyond\"><b>Convergence.</b> not converged: 3 of 22 changes above their "
+    EXPECT_THAT(page(), HasSubstr("<dd class=\"beyond\"><b>Convergence.</b> Not converged: 3 of 22 changes above their "
                                   "limit, 1 of 3 runs missing"));
     EXPECT_THAT(sections(), HasSubstr("Not converged: 3 of 22 changes above their limit, 1 of 3 runs missing"));
 
