@@ -10,7 +10,8 @@ namespace talus::run {
 /// Without one, as after "in the worst,".
 [[nodiscard]] std::string uncapitalised(std::string text);
 
-/// About `digits` significant digits, without an exponent and trailing zeros: at most four decimals. Not finite: "unknown".
+/// About `digits` significant digits, without an exponent and trailing zeros: at most four decimals. Not finite:
+/// "unknown".
 [[nodiscard]] std::string rounded(double value, int digits);
 
 }  // namespace talus::run
