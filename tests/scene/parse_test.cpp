@@ -307,7 +307,7 @@ TEST_F(ParseScene, EveryCommentedDefaultOfAWrittenSceneIsValid) {
     std::istringstream lines(write_scene(spec));
     // Of these, one of several keys must be given.
     const std::set<std::string> with_a_choice = {"bed",   "zone", "inflow",  "barrier", "barrier_opening",
-                                                 "gauge", "zoom", "trigger", "alarm"};
+                                                 "gauge", "zoom", "trigger", "alarm",   "observation"};
     std::string text, current, section;
     while (std::getline(lines, current)) {
         const bool commented_header = current.starts_with("# [") && current.ends_with(']');  // no line of prose
