@@ -11,8 +11,8 @@ namespace talus::terrain {
 
 /// Resistance of a cell's ground where it differs; NaN: as elsewhere.
 struct CoverCell {
-    float friction_coefficient, inverse_turbulent_friction, cohesion;   ///< 1, s2/m, Pa
-    float stem_drag;                                                    ///< deceleration over v^2, 1/m; 0: no stems
+    float friction_coefficient = 0, inverse_turbulent_friction = 0, cohesion = 0;  ///< 1, s2/m, Pa
+    float stem_drag = 0;                                                ///< deceleration over v^2, 1/m; 0: no stems
     float laminar_viscosity = std::numeric_limits<float>::quiet_NaN();  ///< m2/s
 };
 
