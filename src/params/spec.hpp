@@ -302,7 +302,7 @@ struct ZoomSpec {
     [[nodiscard]] bool wanted() const { return !structure.empty() || !polygon.empty() || !polygon_file.empty(); }
 };
 
-/// `[[observation]]`: a front velocity measured in the field.
+/// `[[observation]]`: a velocity measured in the field.
 struct ObservationSpec {
     std::string name;
     double chainage = 0;                                 ///< m along the flow path
