@@ -179,6 +179,13 @@ Section declare_zone() {
         return Violation{"raster_value",
                          ": is given, but raster_holds says that the cells hold a coefficient; leave one of them out"};
     });
+    s.rule([](const ZoneSpec& zone, const SceneSpec& spec, double) -> std::optional<Violation> {
+        if (!spec.material.viscosity_on_ground || !(zone.laminar_viscosity.value_or(0) > 0)) return {};
+        return Violation{"laminar_viscosity_m2ps",
+                         fmt::format(" = {} is refused beside material.viscosity_on_ground = true, which is the same "
+                                     "viscosity; leave one of them out",
+                                     *zone.laminar_viscosity)};
+    });
     s.rule([](const ZoneSpec& zone, const SceneSpec&, double) -> std::optional<Violation> {
         if (zone.friction_coefficient || zone.turbulent_friction || zone.laminar_viscosity || zone.cohesion ||
             zone.stem_density > 0 || zone.raster_holds != ZoneRaster::zone_number) {

@@ -65,6 +65,9 @@ TEST_F(Zones, ViscosityIsGivenOnceOnly) {
                 HasSubstr("leave one of them out"));
     EXPECT_THAT(refusal("[material]\nlaminar_viscosity_m2ps = 0.04\nviscosity_on_ground = true\n"),
                 HasSubstr("viscosity_on_ground = true is refused"));
+    EXPECT_THAT(refusal("[material]\nviscosity_on_ground = true\n[[zone]]\nlaminar_viscosity_m2ps = 0.04\npolygon = "
+                        "\"824100 825050, 824150 825050, 824150 825100\"\n"),
+                HasSubstr("zone[0].laminar_viscosity_m2ps = 0.04 is refused"));
 }
 
 TEST_F(Zones, LaterOnesGoBeforeEarlierOnesWhereTheySaySomething) {
