@@ -159,10 +159,10 @@ TALUS_DEVICE Real open_share(const AnyModel& model, const AnyGround& ground, con
     return (1 - beyond(nearest)) * (1 - beyond(ground.solids.second_nearest(p, nearest, grain_rank)));
 }
 
-/// Particles of a column, as its area counts them, from the number at a particle's place. That number holds the
-/// particle itself, (2/3)^2 in the mean over the places in a column. Where debris is dense and regular that is right;
-/// where it is thin and scattered, particles stand where there are more than elsewhere by just this. So it counts in
-/// full only where the others fill two layers, and less in proportion below.
+/// The number of particles in a column as an average over the area, from the number at the place of one of them. That
+/// includes the particle itself, (2/3)^2 in the mean over places in a column. In dense, regular debris the sum is the
+/// average. In thin debris, scattered at random, it is too large by just that. So the particle counts in full only
+/// where the others fill two layers, and less in proportion below (docs/convergence.md has why two).
 template <class Real>
 TALUS_DEVICE Real counted_by_area(const Real& at_particle) {
     constexpr double own = 4.0 / 9, two_layers = 8;
