@@ -4,7 +4,10 @@
 #include <cmath>
 #include <utility>
 
+#include <fmt/format.h>
+
 #include "sim/change.hpp"
+#include "sim/physics/viscosity.hpp"
 #include "sim/sources/seed.hpp"
 
 namespace talus::validate {
@@ -130,7 +133,15 @@ run::RunStart endless(run::RunStart start, const Watch& watch) {
 }  // namespace
 
 Trial::Trial(run::RunStart start, const Watch& watch, OnFault on_fault)
-    : run_(endless(std::move(start), watch)), watch_(watch), on_fault_(on_fault) {}
+    : run_(endless(std::move(start), watch)), watch_(watch), on_fault_(on_fault) {
+    // As scenes refuse it: smoothing of more than the whole velocity difference is cut, and would be another viscosity.
+    const double longest = sim::longest_viscous_step(model().viscosity);
+    if (model().solver.time_step > longest * (1 + 1e-9)) {
+        problem_ = fmt::format("the viscosity needs steps of at most {:.3g} s, the case takes {:.3g} s", longest,
+                               *model().solver.time_step);
+        stopped_ = true;
+    }
+}
 
 void Trial::remove_wall(std::size_t building) {
     run_.change([&](sim::Model& model, sim::Ground& ground, sim::State& state) {

@@ -1,6 +1,8 @@
 #include "validate/set_up.hpp"
 
 #include <algorithm>
+#include <string>
+#include <utility>
 
 #include <gtest/gtest.h>
 
@@ -32,6 +34,25 @@ TEST(Trial, shows_what_a_device_has_moved_after_every_step_and_at_the_end) {
     EXPECT_GT(speeds[0], before);
     EXPECT_GT(speeds[1], speeds[0]);
     EXPECT_EQ(fastest(), speeds.back());
+}
+
+TEST(Trial, takes_no_step_that_is_too_long_for_the_viscosity) {
+    const Incline incline(0.5, 20, 6);
+    const auto problem = [&](double viscosity) {
+        params::MaterialSpec material;
+        material.viscosity = viscosity;
+        params::SolverSpec solver;
+        solver.time_step = 1.0 / 120;
+        const Watch watch;
+        Trial trial({sim::make_model(material, solver, 0.5), sim::Ground(incline.terrain()),
+                     state_at_rest({incline.point(0, 0, 0.25)})},
+                    watch);
+        return std::pair(trial.advance_to(0.1), trial.problem());
+    };
+    EXPECT_EQ(problem(2), std::pair(true, std::string()));
+    EXPECT_EQ(
+        problem(2.1),
+        std::pair(false, std::string("the viscosity needs steps of at most 0.00794 s, the case takes 0.00833 s")));
 }
 
 TEST(OpeningGate, opens_evenly_from_the_middle_over_its_whole_width) {
