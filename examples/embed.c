@@ -17,6 +17,13 @@ static void check(int code, const talus_error* error) {
     exit(code);
 }
 
+/* How far a long call is; anything but 0 would end it. */
+static int show(void* user, double share) {
+    (void)user;
+    fprintf(stderr, "\r%3.0f %%", 100 * share);
+    return 0;
+}
+
 int main(void) {
     /* A hillside of 25 degrees that runs out on flat ground at x = 70 m, and a scar 1.5 m deep. */
     static float elevation[rows * columns], release[rows * columns];
@@ -28,8 +35,9 @@ int main(void) {
         }
     }
     const double outline[] = {84, 26, 92, 26, 92, 34, 84, 34};
-    const talus_building house = {"house", outline, 4, 5};
+    const talus_building house = {.size = sizeof house, .name = "house", .x_y = outline, .point_count = 4, .height = 5};
     const talus_arrays arrays = {
+        .size = sizeof arrays,
         .crs = "EPSG:32650",
         .grid = {.x_min = 0, .y_min = 0, .cell = 1, .columns = columns, .rows = rows},
         .elevation = elevation,
@@ -39,13 +47,16 @@ int main(void) {
     };
     const char* settings[] = {"material.friction_coefficient=0.2", "solver.target_particle_count=3000"};
 
-    talus_error error;
+    talus_error error = TALUS_SIZED(talus_error);
     talus_simulation* simulation;
-    check(talus_open_arrays(&arrays, NULL, settings, 2, &simulation, &error), &error);
-    check(talus_advance(simulation, 2, &error), &error);
+    check(talus_open_arrays(&arrays, NULL, settings, 2, NULL, &simulation, &error), &error);
+    check(talus_advance(simulation, 2, NULL, &error), &error);
 
     /* What moves, and how fast. */
-    const talus_debris debris = talus_get_debris(simulation);
+    talus_debris debris = TALUS_SIZED(talus_debris);
+    check(talus_get_debris(simulation, &debris, &error), &error);
+    talus_state state = TALUS_SIZED(talus_state);
+    check(talus_get_state(simulation, &state, &error), &error);
     double fastest = 0;
     for (size_t i = 0; i < debris.count; ++i) {
         const double speed =
@@ -53,8 +64,8 @@ int main(void) {
                  debris.velocity_z[i] * debris.velocity_z[i]);
         fastest = fmax(fastest, speed);
     }
-    printf("t = %.1f s: %zu particles of %.3f m3, the fastest at %.1f m/s\n", talus_time(simulation), debris.count,
-           talus_particle_volume(simulation), fastest);
+    printf("t = %.1f s: %zu particles of %.3f m3, the fastest at %.1f m/s\n", state.time, debris.count,
+           state.particle_volume, fastest);
 
     /* A barrier across the foot of the slope, for the last moment. */
     const char* barrier;
@@ -63,23 +74,24 @@ int main(void) {
                       " \"height_m\": 3, \"thickness_m\": 2}",
                       &barrier, &error),
           &error);
-    while (talus_get_phase(simulation) == TALUS_READY && talus_time(simulation) < 20) {
-        check(talus_advance(simulation, talus_time(simulation) + 1, &error), &error);
-    }
+    const talus_progress progress = {.size = sizeof progress, .call = show, .user = NULL};
+    check(talus_advance(simulation, 20, &progress, &error), &error);
+    fprintf(stderr, "\r");
+    check(talus_get_state(simulation, &state, &error), &error);
 
-    for (size_t k = 0; k < talus_structure_count(simulation); ++k) {
-        talus_structure structure;
+    for (size_t k = 0; k < state.structure_count; ++k) {
+        talus_structure structure = TALUS_SIZED(talus_structure);
         check(talus_get_structure(simulation, k, &structure, &error), &error);
         printf("%s: peak force %.0f kN, peak impact pressure %.0f kPa\n", structure.name, structure.peak_force / 1e3,
                structure.peak_impact_pressure / 1e3);
     }
-    talus_map depth;
+    talus_map depth = TALUS_SIZED(talus_map);
     check(talus_get_map(simulation, "peak_depth", &depth, &error), &error);
     double deepest = 0;
     for (long k = 0; k < (long)depth.grid.columns * depth.grid.rows; ++k) {
         if (depth.values[k] > deepest) deepest = depth.values[k];
     }
-    printf("deepest flow %.1f m; %s\n", deepest, talus_message(simulation));
+    printf("deepest flow %.1f m; %s\n", deepest, state.message);
     talus_close(simulation);
     return 0;
 }

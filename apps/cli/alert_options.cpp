@@ -6,19 +6,27 @@
 
 #include <fmt/format.h>
 
+#include "core/input_file.hpp"
 #include "core/try.hpp"
 #include "serve/webhook.hpp"
 
 namespace talus::cli {
 namespace {
 
+/// A pipe would keep the program waiting, deaf to signals, for what nobody writes.
+Status check_regular(const char* option, const std::string& file) {
+    if (Status s = check_input_file(file); !s) return Error{fmt::format("{} {}", option, s.error().message)};
+    std::error_code code;
+    if (!std::filesystem::is_regular_file(file, code)) return Error{fmt::format("{} {}: no such file", option, file)};
+    return {};
+}
+
 /// A small text file, without the line ends at its end.
 Result<std::string> read_secret(const char* option, const std::string& file) {
     constexpr std::size_t longest = 4096;
-    std::error_code code;
-    const bool regular = std::filesystem::is_regular_file(file, code);
+    TALUS_TRY(check_regular(option, file));
     std::ifstream in(file, std::ios::binary);
-    if (!regular || !in) return Error{fmt::format("{} {}: no such file, or it cannot be opened", option, file)};
+    if (!in) return Error{fmt::format("{} {}: cannot be opened", option, file)};
     std::string text(longest + 1, '\0');
     in.read(text.data(), static_cast<std::streamsize>(text.size()));
     text.resize(static_cast<std::size_t>(in.gcount()));
@@ -32,6 +40,7 @@ Result<std::string> read_secret(const char* option, const std::string& file) {
 Status read_mqtt(const AlertArguments& arguments, serve::AlertSettings& settings) {
     auto mqtt = serve::read_mqtt_address(arguments.mqtt, arguments.mqtt_topic, !arguments.mqtt_authority.empty());
     if (!mqtt) return Error{"--mqtt, --mqtt-topic: " + mqtt.error().message};
+    if (!arguments.mqtt_authority.empty()) TALUS_TRY(check_regular("--mqtt-ca", arguments.mqtt_authority));
     mqtt->authority = arguments.mqtt_authority;
     if (!arguments.mqtt_login_file.empty()) {
         TALUS_ASSIGN(const std::string login, read_secret("--mqtt-login-file", arguments.mqtt_login_file));

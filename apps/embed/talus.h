@@ -3,15 +3,20 @@
  *
  * A simulation is made from a scene file or from arrays, stepped, changed between steps, and read through pointers.
  * SI units throughout. Plan positions of what is passed in and of maps are world coordinates; debris is in local
- * single-precision metres from talus_origin().
+ * single-precision metres from the origin in talus_state.
  *
  * Errors: a function that can fail returns a code, and writes a sentence into `error` unless that is NULL. Nothing is
- * changed by a call that fails. No exception leaves the library, and it keeps no state outside a simulation.
+ * changed by a call that fails. NULL where a pointer is needed is TALUS_BAD_INPUT. No exception leaves the library, and
+ * it keeps no state outside a simulation.
  *
  * Threads: a simulation is used by one thread at a time; several simulations can be used at once. A step computes on
  * the threads of solver.thread_count (default: all cores); results do not depend on their number.
  *
- * Pointers that are returned remain valid until the next call that takes the same simulation without const.
+ * Pointers: all that is returned, texts as well as arrays, belongs to the simulation and remains valid until the next
+ * call that takes it without const. Reading takes it with const: it leaves everything valid.
+ *
+ * Sizes: `size` of a struct is sizeof that struct, set by the caller before every use: TALUS_SIZED does it. A struct
+ * that is smaller than that of this version is refused; of a larger one only what this version has is read and written.
  */
 #ifndef TALUS_H
 #define TALUS_H
@@ -19,7 +24,10 @@
 #include <stddef.h>
 #include <stdint.h>
 
-/* Semantic versioning: a new major version may break programs, a new minor version adds functions. */
+/*
+ * Semantic versioning. While the major version is 0, a new minor version may break programs: the name of the library
+ * (libtalus.so.0.1) and the version of its symbols (TALUS_0.1) change with it.
+ */
 #define TALUS_VERSION_MAJOR 0
 #define TALUS_VERSION_MINOR 1
 #define TALUS_VERSION_PATCH 0
@@ -28,6 +36,15 @@
 #define TALUS_API __attribute__((visibility("default")))
 #else
 #define TALUS_API
+#endif
+
+/* A struct with its size, and 0 in all else: talus_error error = TALUS_SIZED(talus_error); */
+#ifdef __cplusplus
+#define TALUS_SIZED(type) \
+    { sizeof(type) }
+#else
+#define TALUS_SIZED(type) \
+    { .size = sizeof(type) }
 #endif
 
 #ifdef __cplusplus
@@ -40,10 +57,12 @@ enum {
     TALUS_OK = 0,
     TALUS_FAILURE = 1,   /* the machine: out of memory, disk full */
     TALUS_BAD_INPUT = 2, /* an argument, the scene or a file it names */
-    TALUS_FAULT = 3      /* the last step cannot be trusted; talus_message() says why */
+    TALUS_FAULT = 3,     /* the last step cannot be trusted; the sentence says why */
+    TALUS_CANCELLED = 4  /* by talus_progress */
 };
 
 typedef struct talus_error {
+    size_t size;
     int code;
     char text[2000]; /* one sentence: file, key, value and what is allowed, where they apply */
 } talus_error;
@@ -52,13 +71,28 @@ typedef struct talus_error {
 TALUS_API const char* talus_version(void);
 
 /*
+ * What long calls tell, and whether they go on: `call` is called on the caller's thread, at most every 20 ms, with the
+ * share that is done, 0 to 1. If it returns anything but 0, the call ends with TALUS_CANCELLED: at once, or after the
+ * time step that it is in. What was cancelled while it opened is not there; what was cancelled between two steps can be
+ * read and goes on. `call` may read the simulation, and not change it. NULL in place of the struct: no such calls.
+ */
+typedef struct talus_progress {
+    size_t size;
+    int (*call)(void* user, double share);
+    void* user;
+} talus_progress;
+
+/*
  * A scene file. `settings`: "section.key=value" as for `talus run --set`, `setting_count` of them. `scene_file` NULL:
  * the scene that the library carries inside itself. Close what was opened with talus_close().
  */
 TALUS_API int talus_open(const char* scene_file, const char* const* settings, size_t setting_count,
-                         talus_simulation** simulation, talus_error* error);
+                         const talus_progress* progress, talus_simulation** simulation, talus_error* error);
 
-/* Square cells; row 0 is the southernmost, column 0 the westernmost, rows follow one another. */
+/*
+ * Square cells; row 0 is the southernmost, column 0 the westernmost, rows follow one another. Part of other structs: it
+ * gets no more members.
+ */
 typedef struct talus_grid {
     double x_min, y_min; /* west and south edge, m */
     double cell;         /* m */
@@ -67,18 +101,20 @@ typedef struct talus_grid {
 
 /* A building: `x_y` has `point_count` corners in the order of its outline, x before y. */
 typedef struct talus_building {
-    const char* name;
+    size_t size;      /* the same in all of an array */
+    const char* name; /* NULL: "building 1", ... */
     const double* x_y;
     size_t point_count;
-    double height; /* m above the mean ground of the outline */
+    double height; /* m above the mean ground of the outline: above 0 to 1000 */
 } talus_building;
 
 typedef struct talus_arrays {
+    size_t size;
     const char* crs; /* projected and metric: "EPSG:2326", or WKT */
     talus_grid grid;
-    const float* elevation; /* m; NaN: not known */
-    const float* release;   /* m, vertical thickness of the debris that fails, part of `elevation`; 0: none */
-    const talus_building* buildings;
+    const float* elevation;          /* m; NaN: not known */
+    const float* release;            /* m, vertical thickness of the debris that fails, part of `elevation`; 0: none */
+    const talus_building* buildings; /* NULL: none */
     size_t building_count;
 } talus_arrays;
 
@@ -87,40 +123,50 @@ typedef struct talus_arrays {
  * talus_open() read; NULL: none is kept. The rest as talus_open(): material, solver and outputs are settings.
  */
 TALUS_API int talus_open_arrays(const talus_arrays* arrays, const char* folder, const char* const* settings,
-                                size_t setting_count, talus_simulation** simulation, talus_error* error);
+                                size_t setting_count, const talus_progress* progress, talus_simulation** simulation,
+                                talus_error* error);
 
-/* NULL is allowed. */
+/* Frees a simulation. NULL: does nothing, as free(). */
 TALUS_API void talus_close(talus_simulation* simulation);
 
 /*
- * Takes `steps` time steps, fewer if the run is over before: see talus_get_phase(). The time step adapts to the flow,
- * unless solver.time_step_s is given.
+ * Takes `steps` time steps, fewer if the run is over before: see talus_state. The time step adapts to the flow, unless
+ * solver.time_step_s is given.
  */
-TALUS_API int talus_step(talus_simulation* simulation, uint64_t steps, talus_error* error);
+TALUS_API int talus_step(talus_simulation* simulation, uint64_t steps, const talus_progress* progress,
+                         talus_error* error);
 
-/* Takes steps until `time`, s, is reached or the run is over. */
-TALUS_API int talus_advance(talus_simulation* simulation, double time, talus_error* error);
+/* Takes steps until `time`, s, is reached or the run is over. `time`: a number, 0 or more; INFINITY: until it is over.
+ */
+TALUS_API int talus_advance(talus_simulation* simulation, double time, const talus_progress* progress,
+                            talus_error* error);
 
-typedef enum talus_phase {
+enum {
     TALUS_READY = 0,
     TALUS_AT_REST = 1, /* what still moves changes no result; a change may make it ready again */
     TALUS_ENDED = 2,   /* solver.end_time_s is reached, or no debris is left */
     TALUS_STOPPED = 3  /* a step could not be trusted */
-} talus_phase;
+};
 
-TALUS_API talus_phase talus_get_phase(const talus_simulation* simulation);
-/* Why it is at rest, ended or stopped; "" while ready. */
-TALUS_API const char* talus_message(talus_simulation* simulation);
-TALUS_API double talus_time(const talus_simulation* simulation); /* s */
-TALUS_API uint64_t talus_steps(const talus_simulation* simulation);
+typedef struct talus_state {
+    size_t size;
+    int32_t phase;          /* TALUS_READY, ... */
+    const char* message;    /* why it is at rest, ended or stopped; "" while ready */
+    double time;            /* s */
+    uint64_t steps;         /* taken so far */
+    double origin[3];       /* world position of the local frame: x, y, z */
+    double particle_volume; /* m3 */
+    uint64_t structure_count;
+} talus_state;
+
+TALUS_API int talus_get_state(const talus_simulation* simulation, talus_state* state, talus_error* error);
+
 /* Of time, positions and velocities: equal for equal results, on any number of threads and any instruction set. */
-TALUS_API uint64_t talus_hash(const talus_simulation* simulation);
-/* World position of the local frame's origin: x, y, z. */
-TALUS_API void talus_origin(const talus_simulation* simulation, double x_y_z[3]);
-TALUS_API double talus_particle_volume(const talus_simulation* simulation); /* m3 */
+TALUS_API int talus_get_hash(const talus_simulation* simulation, uint64_t* hash, talus_error* error);
 
 /* `count` particles in an order that changes with every step; `id` names a particle for good. */
 typedef struct talus_debris {
+    size_t size;
     size_t count;
     const float *x, *y, *z;                            /* m, local */
     const float *velocity_x, *velocity_y, *velocity_z; /* m/s */
@@ -128,9 +174,10 @@ typedef struct talus_debris {
     const uint8_t* held; /* 1: its release has not started */
 } talus_debris;
 
-TALUS_API talus_debris talus_get_debris(const talus_simulation* simulation);
+TALUS_API int talus_get_debris(const talus_simulation* simulation, talus_debris* debris, talus_error* error);
 
 typedef struct talus_map {
+    size_t size;
     talus_grid grid;
     const float* values; /* NaN: no value */
 } talus_map;
@@ -139,22 +186,24 @@ typedef struct talus_map {
  * "depth" (m, now), "peak_depth" (m), "peak_speed" (m/s), "peak_pressure" (Pa, density times speed squared),
  * "arrival_time" (s), "deposit_depth" (m), "erosion_depth" (m).
  */
-TALUS_API int talus_get_map(talus_simulation* simulation, const char* name, talus_map* map, talus_error* error);
+TALUS_API int talus_get_map(const talus_simulation* simulation, const char* name, talus_map* map, talus_error* error);
 
 /* The front along the flow path: `count` chainages that it has passed. NaN: no value. */
 typedef struct talus_front {
+    size_t size;
     size_t count;
     const double* chainage;     /* m */
     const double* arrival_time; /* s */
     const double* velocity;     /* m/s */
 } talus_front;
 
-TALUS_API talus_front talus_get_front(talus_simulation* simulation);
+TALUS_API int talus_get_front(const talus_simulation* simulation, talus_front* front, talus_error* error);
 
 /* A building or barrier, in the order in which they were added; removed ones keep their place. */
 typedef struct talus_structure {
+    size_t size;
     const char* name;
-    int hit, is_barrier;
+    int32_t hit, is_barrier;
     double first_hit_time;       /* s; NaN: not hit, or not failed */
     double failure_time;         /* s */
     double peak_force;           /* N, on all its walls, filtered over outputs.impact_filter_window_s */
@@ -163,8 +212,8 @@ typedef struct talus_structure {
     double impulse;              /* N s */
 } talus_structure;
 
-TALUS_API size_t talus_structure_count(const talus_simulation* simulation);
-TALUS_API int talus_get_structure(talus_simulation* simulation, size_t index, talus_structure* structure,
+/* `index`: less than structure_count of talus_state. */
+TALUS_API int talus_get_structure(const talus_simulation* simulation, size_t index, talus_structure* structure,
                                   talus_error* error);
 
 /* A live key of the scene reference between two steps: "material.friction_coefficient". */
@@ -172,9 +221,8 @@ TALUS_API int talus_set(talus_simulation* simulation, const char* key, double va
 
 /*
  * Any action of docs/protocol.md on releases, inflows, buildings, barriers, zones, beds and material, as JSON:
- * {"action": "put_barrier", "line": [[x, y], [x, y]], "height_m": 4}. `created` (may be NULL): the id of what is new,
- * or
- * "".
+ * {"action": "put_barrier", "line": [[x, y], [x, y]], "height_m": 4}. `created`: the id of what is new, or ""; NULL:
+ * not wanted.
  */
 TALUS_API int talus_apply(talus_simulation* simulation, const char* action, const char** created, talus_error* error);
 
@@ -182,18 +230,20 @@ TALUS_API int talus_apply(talus_simulation* simulation, const char* action, cons
  * "scene", "state", "setup", "impacts" or "series" as JSON, as docs/protocol.md has them; "verdict": whether the
  * results so far can be relied on, as `verdict` of docs/results.md.
  */
-TALUS_API int talus_get_json(talus_simulation* simulation, const char* name, const char** json, talus_error* error);
+TALUS_API int talus_get_json(const talus_simulation* simulation, const char* name, const char** json,
+                             talus_error* error);
 
 /* Writes maps, tables and report of the run so far, as `talus run` does, into a new or empty folder. */
-TALUS_API int talus_write_results(talus_simulation* simulation, const char* folder, talus_error* error);
+TALUS_API int talus_write_results(const talus_simulation* simulation, const char* folder, talus_error* error);
 
 /*
  * Saves what determines the state: the scene's name and all changes with the step before which they were made.
  * talus_open_saved() computes the same state again, to the bit; it takes as long as the steps did. A scene from arrays
- * needs a folder of its own for this.
+ * needs a folder of its own for this. A saved simulation is a file of at most 64 MiB.
  */
-TALUS_API int talus_save(talus_simulation* simulation, const char* file, talus_error* error);
-TALUS_API int talus_open_saved(const char* file, talus_simulation** simulation, talus_error* error);
+TALUS_API int talus_save(const talus_simulation* simulation, const char* file, talus_error* error);
+TALUS_API int talus_open_saved(const char* file, const talus_progress* progress, talus_simulation** simulation,
+                               talus_error* error);
 
 #ifdef __cplusplus
 }

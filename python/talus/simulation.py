@@ -7,16 +7,19 @@ import enum
 import json
 import os
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, Iterator, Mapping, Sequence
+from typing import TYPE_CHECKING, Any, Callable, Mapping, NoReturn, Sequence
 
 import numpy as np
 
+from . import _arguments as arguments
 from . import _library as lib
 
 if TYPE_CHECKING:
     import numpy.typing as npt
 
 Settings = Mapping[str, object]
+#: Is told ten times a second what share of a call is done, 0 to 1. What it raises cancels the call.
+Progress = Callable[[float], object]
 
 
 class Phase(enum.IntEnum):
@@ -114,26 +117,28 @@ class Structure:
     impulse: float  #: N s
 
 
-def _setting_text(value: object) -> str:
-    if isinstance(value, bool):
-        return "true" if value else "false"
-    return json.dumps(value) if isinstance(value, (list, tuple)) else str(value)
-
-
 class Simulation:
     """A debris flow in a scene. Not to be used by two threads at once; several simulations can be.
 
     >>> with Simulation("my_scene/scene.toml", {"material.friction_coefficient": 0.3}) as simulation:
     ...     simulation.advance(20)
     ...     simulation.map("peak_depth").plot()
+
+    Arrays that it returns are copies: they stay as they are when it goes on or is closed. Ctrl-C ends a call within
+    0.2 s and leaves the simulation as its last whole step did.
     """
 
-    def __init__(self, scene: str | os.PathLike[str] | None = None, settings: Settings | None = None) -> None:
+    def __init__(
+        self,
+        scene: str | os.PathLike[str] | None = None,
+        settings: Settings | None = None,
+        progress: Progress | None = None,
+    ) -> None:
         """`scene`: a scene file; None: the scene that comes with the library. `settings`: keys of the scene, as for
         `talus run --set`, with their values."""
-        self._made = ctypes.c_void_p()
-        path = None if scene is None else os.fsencode(scene)
-        lib.call("talus_open", path, *self._texts(settings), ctypes.byref(self._made))
+        path = None if scene is None else arguments.path("scene", scene)
+        texts = _texts(settings)
+        self._open(lambda watch, made: lib.call("talus_open", path, *texts, watch, made), progress)
 
     @classmethod
     def from_arrays(
@@ -148,58 +153,77 @@ class Simulation:
         buildings: Sequence[Building] = (),
         settings: Settings | None = None,
         folder: str | os.PathLike[str] | None = None,
+        progress: Progress | None = None,
     ) -> Simulation:
         """A scene from arrays of the same shape, row 0 southernmost: `elevation` in m (NaN: not known), `release` the
         vertical thickness in m of the debris that fails, part of the elevation (0: none). `crs`: projected and metric,
         "EPSG:2326". `folder`: a new or empty one that the scene is written into; such a simulation can be saved.
         """
-        ground = np.ascontiguousarray(elevation, np.float32)
-        thickness = np.ascontiguousarray(release, np.float32)
-        if ground.ndim != 2 or ground.shape != thickness.shape:
+        ground = arguments.raster("elevation", elevation)
+        thickness = arguments.raster("release", release)
+        if ground.shape != thickness.shape:
             raise lib.InputError(f"elevation has shape {ground.shape}, release {thickness.shape}; both must be (rows, columns)")
-        outlines = [np.ascontiguousarray(b.outline, np.float64).reshape(-1, 2) for b in buildings]
-        made = (lib.Building * len(outlines))(
-            *(
-                lib.Building((b.name or f"building {k + 1}").encode(), _pointer(o, ctypes.c_double), len(o), b.height)
-                for k, (b, o) in enumerate(zip(buildings, outlines))
-            )
-        )
-        rows, columns = ground.shape
-        arrays = lib.Arrays(
-            crs.encode(), lib.Grid(x_min, y_min, cell, columns, rows), _pointer(ground, ctypes.c_float),
-            _pointer(thickness, ctypes.c_float), made, len(outlines),
+        outlines, houses = [], []
+        for k, building in enumerate(buildings):
+            if not isinstance(building, Building):
+                raise lib.InputError(f"buildings[{k}] must be a talus.Building")
+            name = arguments.text(f"buildings[{k}].name", building.name or f"building {k + 1}")
+            outline = arguments.outline(f"buildings[{k}].outline", building.outline)
+            height = arguments.number(f"buildings[{k}].height", building.height, above=0, most=1000)
+            outlines.append(outline)
+            houses.append(lib.Building(name, _pointer(outline, ctypes.c_double), len(outline), height))
+        rows, columns = (arguments.count("rows of elevation", n, 2**20) for n in ground.shape)
+        grid = lib.Grid(
+            arguments.number("x_min", x_min), arguments.number("y_min", y_min), arguments.number("cell", cell, above=0),
+            columns, rows,
         )  # fmt: skip
-        path = None if folder is None else os.fsencode(folder)
+        arrays = lib.Arrays(
+            arguments.text("crs", crs), grid, _pointer(ground, ctypes.c_float), _pointer(thickness, ctypes.c_float),
+            (lib.Building * len(houses))(*houses), len(houses),
+        )  # fmt: skip
+        path = None if folder is None else arguments.path("folder", folder)
+        texts = _texts(settings)
+        # `kept`: in memory as long as the call may last.
+        kept = (ground, thickness, outlines)
         simulation = cls.__new__(cls)
-        simulation._made = ctypes.c_void_p()
-        texts = simulation._texts(settings)
-        lib.call("talus_open_arrays", ctypes.byref(arrays), path, *texts, ctypes.byref(simulation._made))
+        simulation._open(
+            lambda watch, made, _=kept: lib.call("talus_open_arrays", ctypes.byref(arrays), path, *texts, watch, made),
+            progress,
+        )
         return simulation
 
     @classmethod
-    def from_saved(cls, file: str | os.PathLike[str]) -> Simulation:
+    def from_saved(cls, file: str | os.PathLike[str], progress: Progress | None = None) -> Simulation:
         """What save() wrote, computed again to the same bits."""
+        path = arguments.path("file", file)
         simulation = cls.__new__(cls)
-        simulation._made = ctypes.c_void_p()
-        lib.call("talus_open_saved", os.fsencode(file), ctypes.byref(simulation._made))
+        simulation._open(lambda watch, made: lib.call("talus_open_saved", path, watch, made), progress)
         return simulation
 
-    @staticmethod
-    def _texts(settings: Settings | None) -> tuple[Any, int]:
-        texts = [f"{key}={_setting_text(value)}".encode() for key, value in (settings or {}).items()]
-        return (ctypes.c_char_p * len(texts))(*texts), len(texts)
+    def _open(self, work: Callable[[Any, Any], None], progress: Progress | None) -> None:
+        made = ctypes.c_void_p()
+        self._made = ctypes.c_void_p()
+        self._calls = lib.Caller()
+        self._calls(
+            lambda watch: work(watch, ctypes.byref(made)), progress, lambda: lib.library.talus_close(made)
+        )
+        self._made = made
 
     @property
     def _handle(self) -> ctypes.c_void_p:
         if not self._made:
             raise lib.InputError("the simulation is closed")
+        self._calls.wait()
         return self._made
 
     def close(self) -> None:
-        """Frees its memory; views of its arrays must not be used any more."""
-        if getattr(self, "_made", None):
-            lib.library.talus_close(self._made)
-            self._made = ctypes.c_void_p()
+        """Frees its memory."""
+        made, calls = getattr(self, "_made", None), getattr(self, "_calls", None)
+        self._made = ctypes.c_void_p()
+        if calls:
+            calls.close()
+        if made:
+            lib.library.talus_close(made)
 
     def __enter__(self) -> Simulation:
         return self
@@ -210,91 +234,97 @@ class Simulation:
     def __del__(self) -> None:
         self.close()
 
-    def step(self, count: int = 1) -> Phase:
+    def __reduce__(self) -> NoReturn:
+        raise TypeError("a Simulation cannot be copied or pickled; save() it, and open it again with from_saved()")
+
+    def step(self, count: int = 1, progress: Progress | None = None) -> Phase:
         """Takes time steps, fewer if the run is over before. Raises FaultError where a step cannot be trusted."""
-        lib.call("talus_step", self._handle, count)
+        handle, steps = self._handle, arguments.count("count", count)
+        self._calls(lambda watch: lib.call("talus_step", handle, steps, watch), progress)
         return self.phase
 
-    def advance(self, time: float) -> Phase:
+    def advance(self, time: float, progress: Progress | None = None) -> Phase:
         """Takes steps until `time`, s, or until the run is over."""
-        lib.call("talus_advance", self._handle, time)
+        handle, end = self._handle, arguments.number("time", time)
+        self._calls(lambda watch: lib.call("talus_advance", handle, end, watch), progress)
         return self.phase
+
+    @property
+    def _state(self) -> lib.State:
+        state = lib.State()
+        lib.call("talus_get_state", self._handle, ctypes.byref(state))
+        return state
 
     @property
     def phase(self) -> Phase:
         """Whether it goes on; `message` says why not."""
-        return Phase(lib.library.talus_get_phase(self._handle))
+        return Phase(self._state.phase)
 
     @property
     def message(self) -> str:
         """Why it is at rest, ended or stopped; empty while ready."""
-        return lib.library.talus_message(self._handle).decode()
+        return self._state.message.decode()
 
     @property
     def time(self) -> float:
         """Simulated time, s."""
-        return lib.library.talus_time(self._handle)
+        return self._state.time
 
     @property
     def steps(self) -> int:
         """Time steps taken so far."""
-        return lib.library.talus_steps(self._handle)
+        return self._state.steps
 
     @property
     def hash(self) -> str:
         """Of time, positions and velocities: equal for equal results, on any number of threads."""
-        return f"{lib.library.talus_hash(self._handle):016x}"
+        found = ctypes.c_uint64()
+        lib.call("talus_get_hash", self._handle, ctypes.byref(found))
+        return f"{found.value:016x}"
 
     @property
     def origin(self) -> npt.NDArray[np.float64]:
         """World position (x, y, z) of the local frame, m."""
-        origin = np.zeros(3)
-        lib.library.talus_origin(self._handle, _pointer(origin, ctypes.c_double))
-        return origin
+        return np.array(self._state.origin)
 
     @property
     def particle_volume(self) -> float:
         """Volume that a particle stands for, m3."""
-        return lib.library.talus_particle_volume(self._handle)
+        return self._state.particle_volume
 
-    def _views(self, *names: str) -> Iterator[npt.NDArray[Any]]:
-        debris = lib.library.talus_get_debris(self._handle)
-        for name in names:
-            view = np.ctypeslib.as_array(getattr(debris, name), (debris.count,))
-            view.flags.writeable = False
-            yield view
+    def _debris(self, *names: str) -> tuple[npt.NDArray[Any], ...]:
+        debris = lib.Debris()
+        lib.call("talus_get_debris", self._handle, ctypes.byref(debris))
+        return tuple(_copy(getattr(debris, name), (debris.count,)) for name in names)
 
     @property
     def position(self) -> tuple[npt.NDArray[np.float32], ...]:
-        """x, y and z of every particle, m from `origin`: views of the simulation's arrays, valid until the next step."""
-        return tuple(self._views("x", "y", "z"))
+        """x, y and z of every particle, m from `origin`, as they are now."""
+        return self._debris("x", "y", "z")
 
     @property
     def velocity(self) -> tuple[npt.NDArray[np.float32], ...]:
-        """Its components along x, y and z, m/s: views, as position."""
-        return tuple(self._views("vx", "vy", "vz"))
+        """Its components along x, y and z, m/s, as they are now."""
+        return self._debris("vx", "vy", "vz")
 
     @property
     def id(self) -> npt.NDArray[np.uint32]:
-        """Names every particle for good, as their order changes: a view, as position."""
-        return next(self._views("id"))
+        """Names every particle for good, as their order changes."""
+        return self._debris("id")[0]
 
     def map(self, name: str) -> Map:
         """The map of that name (see UNITS) as it is now."""
         found = lib.Map()
-        lib.call("talus_get_map", self._handle, name.encode(), ctypes.byref(found))
+        lib.call("talus_get_map", self._handle, arguments.text("name", name), ctypes.byref(found))
         grid = found.grid
-        values = np.ctypeslib.as_array(found.values, (grid.rows, grid.columns)).copy()
-        return Map(name, values, grid.x_min, grid.y_min, grid.cell)
+        return Map(name, _copy(found.values, (grid.rows, grid.columns)), grid.x_min, grid.y_min, grid.cell)
 
     @property
     def front(self) -> Front:
         """The front along the flow path so far; empty before debris reaches it."""
-        front = lib.library.talus_get_front(self._handle)
-        if front.count == 0:
-            return Front(np.zeros(0), np.zeros(0), np.zeros(0))
-        columns = (front.chainage, front.arrival_time, front.velocity)
-        return Front(*(np.ctypeslib.as_array(column, (front.count,)).copy() for column in columns))
+        front = lib.Front()
+        lib.call("talus_get_front", self._handle, ctypes.byref(front))
+        return Front(*(_copy(c, (front.count,)) for c in (front.chainage, front.arrival_time, front.velocity)))
 
     @property
     def verdict(self) -> dict[str, Any]:
@@ -307,7 +337,7 @@ class Simulation:
     def structures(self) -> list[Structure]:
         """Buildings and barriers in the order in which they were added."""
         made = []
-        for index in range(lib.library.talus_structure_count(self._handle)):
+        for index in range(self._state.structure_count):
             s = lib.Structure()
             lib.call("talus_get_structure", self._handle, index, ctypes.byref(s))
             made.append(
@@ -318,29 +348,43 @@ class Simulation:
 
     def set(self, key: str, value: float) -> None:
         """A live key of the scene between two steps: "material.friction_coefficient"."""
-        lib.call("talus_set", self._handle, key.encode(), value)
+        lib.call("talus_set", self._handle, arguments.text("key", key), arguments.number("value", value))
 
     def apply(self, action: str, **keys: object) -> str:
         """An action of docs/protocol.md, such as apply("put_barrier", line=[[x, y], [x, y]], height_m=4). Returns the id
         of what is new, or ""."""
         created = ctypes.c_char_p()
-        text = json.dumps({"action": action, **keys}).encode()
-        lib.call("talus_apply", self._handle, text, ctypes.byref(created))
+        values = [f", {json.dumps(key)}: {arguments.as_json(key, value)}" for key, value in keys.items()]
+        text = f'{{"action": {arguments.as_json("action", action)}{"".join(values)}}}'.encode()
+        handle = self._handle
+        self._calls(lambda _: lib.call("talus_apply", handle, text, ctypes.byref(created)))
         return (created.value or b"").decode()
 
     def json(self, name: str) -> Any:
         """"scene", "state", "setup", "impacts" or "series", as docs/protocol.md has them; "verdict"."""
         text = ctypes.c_char_p()
-        lib.call("talus_get_json", self._handle, name.encode(), ctypes.byref(text))
+        lib.call("talus_get_json", self._handle, arguments.text("name", name), ctypes.byref(text))
         return json.loads((text.value or b"").decode())
 
     def write_results(self, folder: str | os.PathLike[str]) -> None:
         """Maps, tables and report, as `talus run` writes them, into a new or empty folder."""
-        lib.call("talus_write_results", self._handle, os.fsencode(folder))
+        handle, path = self._handle, arguments.path("folder", folder)
+        self._calls(lambda _: lib.call("talus_write_results", handle, path))
 
     def save(self, file: str | os.PathLike[str]) -> None:
         """Writes what determines the state; see from_saved()."""
-        lib.call("talus_save", self._handle, os.fsencode(file))
+        lib.call("talus_save", self._handle, arguments.path("file", file))
+
+
+def _texts(settings: Settings | None) -> tuple[Any, int]:
+    texts = arguments.settings(settings)
+    return (ctypes.c_char_p * len(texts))(*texts), len(texts)
+
+
+def _copy(values: Any, shape: tuple[int, ...]) -> npt.NDArray[Any]:
+    if 0 in shape:  # there may be no array at all
+        return np.zeros(shape, values._type_)
+    return np.ctypeslib.as_array(values, shape).copy()
 
 
 def _pointer(array: npt.NDArray[Any], kind: Any) -> Any:

@@ -7,6 +7,7 @@
 
 #include <fmt/format.h>
 
+#include "core/coordinate_text.hpp"
 #include "core/hash.hpp"
 #include "core/try.hpp"
 #include "geo/orthophoto.hpp"
@@ -135,11 +136,12 @@ void record_input(const std::string& role, const std::string& path, Scene& scene
 }
 
 std::string place_text(const PlanPoint& p) {
-    return fmt::format("({:.1f}, {:.1f})", p.x, p.y);
+    return fmt::format("({}, {})", coordinate_text(p.x), coordinate_text(p.y));
 }
 
 std::string extent_text(const Extent& e) {
-    return fmt::format("x {:.1f} to {:.1f}, y {:.1f} to {:.1f}", e.x_min, e.x_max, e.y_min, e.y_max);
+    return fmt::format("x {} to {}, y {} to {}", coordinate_text(e.x_min), coordinate_text(e.x_max),
+                       coordinate_text(e.y_min), coordinate_text(e.y_max));
 }
 
 Extent covered_extent(const terrain::Terrain& terrain) {
@@ -175,7 +177,10 @@ Result<Scene> assemble_scene(const ParsedScene& parsed) {
     TALUS_TRY(check_alerts(parsed, scene));
     TALUS_TRY(particles ? check_limits(parsed, scene) : check_depth_averaged(parsed, scene));
     note_implausible_terrain(scene);
-    if (particles) note_coarse_particles(scene);
+    if (particles) {
+        note_coarse_particles(scene);
+        note_unused_by_particles(scene);
+    }
     return Result<Scene>(std::move(scene));
 }
 

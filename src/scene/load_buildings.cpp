@@ -215,6 +215,11 @@ Status load_buildings(const ParsedScene& parsed, Scene& scene) {
     Status loaded = geo::is_mesh_file(spec.file) ? load_mesh_buildings(parsed, scene, outside)
                                                  : load_footprints(parsed, scene, outside);
     if (!loaded) return loaded;
+    if (scene.buildings.empty() && outside == 0) {
+        return Error{fmt::format(
+            "{}: {}: holds no building with its roof above the ground; leave out [buildings] or use another file",
+            parsed.at("buildings.file"), spec.file)};
+    }
     if (scene.buildings.empty()) {
         return Error{
             fmt::format("{}: {}: all {} buildings lie outside the terrain, {} ({}); leave out [buildings] or use "

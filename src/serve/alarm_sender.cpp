@@ -7,13 +7,35 @@
 
 namespace talus::serve {
 
+AlarmSender::AlarmSender(Settings settings, MqttLink* link) : settings_(std::move(settings)) {
+    const auto add = [this](std::string name, std::function<Status(const std::string&)> deliver) {
+        queues_.push_back(std::make_unique<Queue>());
+        queues_.back()->name = std::move(name);
+        queues_.back()->deliver = std::move(deliver);
+    };
+    if (settings_.webhook) {
+        add(settings_.webhook->shown(), [this](const std::string& json) {
+            return post_webhook(*settings_.webhook, json, settings_.limit, stopped_);
+        });
+    }
+    if (link != nullptr) {
+        add("MQTT", [this, link](const std::string& json) { return link->publish(json, settings_.limit, stopped_); });
+    }
+}
+
+std::vector<std::string> AlarmSender::receivers() const {
+    std::vector<std::string> names;
+    for (const auto& queue : queues_) names.push_back(queue->name);
+    return names;
+}
+
 bool AlarmSender::rest(std::chrono::milliseconds time) const {
     const auto end = std::chrono::steady_clock::now() + time;
     while (!stop_ && std::chrono::steady_clock::now() < end) std::this_thread::sleep_for(std::chrono::milliseconds(50));
     return !stop_;
 }
 
-Status AlarmSender::repeat(const std::function<Status()>& attempt) {
+Status AlarmSender::repeat(const std::function<Status()>& attempt) const {
     std::size_t tries = 1;
     Status last = attempt();
     while (!last && tries <= settings_.waits.size() && rest(settings_.waits[tries - 1])) {
@@ -24,30 +46,24 @@ Status AlarmSender::repeat(const std::function<Status()>& attempt) {
     return Error{fmt::format("{} (tried {} times)", last.error().message, tries)};
 }
 
-void AlarmSender::send(std::string json, std::function<void(bool, const std::string&)> told) {
-    if (waiting_ >= most_waiting) {
-        told(false, fmt::format("not sent: {} messages wait already", most_waiting));
-        return;
-    }
-    ++waiting_;
-    worker_.post([this, json = std::move(json), told = std::move(told)] {
-        --waiting_;
-        if (stop_) return;
-        const std::function<bool()> stop = [this] { return stop_.load(); };
-        std::string outcome;
-        bool reached = true;
-        const auto note = [&](const Status& status, const std::string& receiver) {
-            reached = reached && status;
-            if (!outcome.empty()) outcome += "; ";
-            outcome += status ? "sent to " + receiver : "not delivered: " + status.error().message;
-        };
-        if (settings_.webhook) {
-            note(repeat([&] { return post_webhook(*settings_.webhook, json, settings_.limit, stop); }),
-                 settings_.webhook->shown());
+void AlarmSender::send(const std::string& json, const std::function<void(const Outcome&)>& told) {
+    for (std::size_t k = 0; k < queues_.size(); ++k) {
+        Queue& queue = *queues_[k];
+        if (queue.waiting >= most_waiting) {
+            told({k, false, fmt::format("not sent to {}: {} messages wait already", queue.name, most_waiting),
+                  queue.waiting});
+            continue;
         }
-        if (link_ != nullptr) note(repeat([&] { return link_->publish(json, settings_.limit, stop); }), "MQTT");
-        if (!stop_) told(reached, outcome);
-    });
+        ++queue.waiting;
+        queue.worker.post([this, k, &queue, json, told] {
+            --queue.waiting;
+            if (stop_) return;
+            const Status sent = repeat([&] { return queue.deliver(json); });
+            if (stop_) return;
+            told({k, sent.ok(), sent ? "sent to " + queue.name : "not delivered: " + sent.error().message,
+                  queue.waiting});
+        });
+    }
 }
 
 }  // namespace talus::serve

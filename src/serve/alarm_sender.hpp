@@ -4,6 +4,7 @@
 #include <chrono>
 #include <cstddef>
 #include <functional>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -15,8 +16,8 @@
 
 namespace talus::serve {
 
-/// Delivers messages to a webhook and a broker on a thread of its own, each with a bounded number of tries, so that
-/// nothing waits for a receiver.
+/// Delivers messages to a webhook and a broker, each with a bounded number of tries. Each receiver has a queue and a
+/// thread of its own, so that nothing waits for a receiver, and none for another.
 class AlarmSender {
   public:
     struct Settings {
@@ -26,26 +27,42 @@ class AlarmSender {
         std::chrono::milliseconds limit{10000};                                  ///< of a try
     };
     /// `link`: none for nullptr; it must outlive this.
-    AlarmSender(Settings settings, MqttLink* link) : settings_(std::move(settings)), link_(link) {}
-    /// Ends the try that goes on; what waits is discarded.
+    AlarmSender(Settings settings, MqttLink* link);
+    /// Ends the tries that go on; what waits is discarded.
     ~AlarmSender() { stop_ = true; }
 
-    /// Whether there is anybody to tell.
-    [[nodiscard]] bool has_receiver() const { return settings_.webhook || link_ != nullptr; }
-    /// `told`: an outcome in words, and whether it reached every receiver; from another thread.
-    void send(std::string json, std::function<void(bool reached, const std::string& outcome)> told);
+    /// The receivers by their number: "hooks.example.org:443", "MQTT".
+    [[nodiscard]] std::vector<std::string> receivers() const;
+    struct Outcome {
+        std::size_t receiver = 0;
+        bool reached = false;
+        std::string sentence;
+        std::size_t waiting = 0;  ///< messages for the same receiver that were sent later
+    };
+    /// `told`: once for each receiver, from another thread or before this returns. A queue that is full keeps the
+    /// oldest messages.
+    void send(const std::string& json, const std::function<void(const Outcome&)>& told);
+    /// Messages that wait for a receiver, beside the one that is on its way.
+    [[nodiscard]] std::size_t waiting(std::size_t receiver) const { return queues_[receiver]->waiting; }
+
+    static constexpr std::size_t most_waiting = 100;
 
   private:
-    [[nodiscard]] Status repeat(const std::function<Status()>& attempt);
+    struct Queue {
+        std::string name;
+        std::function<Status(const std::string& json)> deliver;  ///< a try
+        std::atomic<std::size_t> waiting = 0;
+        Worker worker{"alarms"};  // ends first
+    };
+
+    [[nodiscard]] Status repeat(const std::function<Status()>& attempt) const;
     /// False: the program ends.
     [[nodiscard]] bool rest(std::chrono::milliseconds time) const;
 
-    static constexpr std::size_t most_waiting = 100;
     Settings settings_;
-    MqttLink* link_;
     std::atomic<bool> stop_ = false;
-    std::atomic<std::size_t> waiting_ = 0;
-    Worker worker_{"alarms"};  // ends first
+    const std::function<bool()> stopped_ = [this] { return stop_.load(); };
+    std::vector<std::unique_ptr<Queue>> queues_;  // end first
 };
 
 }  // namespace talus::serve

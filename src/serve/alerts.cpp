@@ -57,6 +57,7 @@ Status Alerts::open() {
         TALUS_ASSIGN(link_, MqttLink::open(*settings_.mqtt, std::move(listener)));
     }
     sender_ = std::make_unique<AlarmSender>(settings_.sender, link_.get());
+    behind_.assign(sender_->receivers().size(), false);
     if (listens()) session_.loop().post([](Scenarios& all) { all.reserve_for_triggers(); });
     return {};
 }
@@ -222,7 +223,7 @@ void Alerts::send(int scenario, std::size_t number) {
     told.raised_at[number] = now;
     if (settings_.log)
         settings_.log(visible(fmt::format("alarm {} in scenario {}: {}", alarm.name, name, alarm.sentence)));
-    if (!sender_ || !sender_->has_receiver()) return;
+    if (!sender_ || behind_.empty()) return;
     if (told.alerts.trigger.is_null() && !settings_.all_runs) {
         told.delivery[number] = "not sent: no trigger started this run";
         return;
@@ -232,19 +233,43 @@ void Alerts::send(int scenario, std::size_t number) {
     message["scenario"] = name;
     message["trigger"] = told.alerts.trigger.is_null() ? json() : told.alerts.trigger["trigger"];
     message["raised_at"] = now;
-    told.delivery[number] = "is being sent";
+    told.outcomes[number].resize(behind_.size());
     sender_->send(message.dump(-1, ' ', false, json::error_handler_t::replace),
-                  [this, scenario, number, generation = told.generation, alarm = alarm.name](
-                      bool reached, const std::string& outcome) {
-                      session_.post([this, scenario, number, generation, alarm, reached, outcome] {
+                  [this, scenario, number, generation = told.generation,
+                   alarm = alarm.name](const AlarmSender::Outcome& outcome) {
+                      session_.post([this, scenario, number, generation, alarm, outcome] {
                           const auto found = told_.find(scenario);
                           if (found != told_.end() && found->second.generation == generation) {
-                              found->second.delivery[number] = outcome;
+                              found->second.outcomes[number][outcome.receiver] = outcome.sentence;
                           }
-                          if (reached) return tell();
-                          note(fmt::format("alarm {}: {}", alarm, outcome));
+                          if (!outcome.reached) note(fmt::format("alarm {}: {}", alarm, outcome.sentence));
+                          follow_queue(outcome.receiver, outcome.waiting);
+                          tell();
                       });
                   });
+    for (std::size_t k = 0; k < behind_.size(); ++k) follow_queue(k, sender_->waiting(k));
+}
+
+/// Says once that a receiver is behind, and once that it is not any more.
+void Alerts::follow_queue(std::size_t receiver, std::size_t waiting) {
+    constexpr std::size_t many = 3;
+    if (behind_[receiver] ? waiting > 0 : waiting < many) return;
+    behind_[receiver] = !behind_[receiver];
+    const std::string name = sender_->receivers()[receiver];
+    note(behind_[receiver] ? fmt::format("{} is behind: {} alarms wait for it", name, waiting)
+                           : fmt::format("{} is not behind any more", name));
+}
+
+std::string Alerts::delivery_of(const Told& told, std::size_t alarm) const {
+    if (told.delivery.contains(alarm)) return told.delivery.at(alarm);
+    const auto found = told.outcomes.find(alarm);
+    if (found == told.outcomes.end()) return "";
+    std::vector<std::string> parts;
+    for (std::size_t k = 0; k < found->second.size(); ++k) {
+        const std::string& outcome = found->second[k];
+        parts.push_back(!outcome.empty() ? outcome : "is being sent to " + sender_->receivers()[k]);
+    }
+    return fmt::format("{}", fmt::join(parts, "; "));
 }
 
 json Alerts::describe() const {
@@ -276,7 +301,7 @@ json Alerts::describe() const {
             json row = alarm_json(told.alerts.alarms[k]);
             row["scenario"] = name;
             row["raised_at"] = told.raised_at.contains(k) ? json(told.raised_at.at(k)) : json();
-            row["delivery"] = told.delivery.contains(k) ? told.delivery.at(k) : "";
+            row["delivery"] = delivery_of(told, k);
             alarms.push_back(std::move(row));
         }
     }

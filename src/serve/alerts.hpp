@@ -9,6 +9,7 @@
 #include <optional>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include <nlohmann/json.hpp>
 
@@ -58,6 +59,13 @@ class Alerts {
         WallTime began{};   ///< time 0
     };
     using Runs = std::map<std::string, Run>;
+    struct Told {  // NOLINT(bugprone-exception-escape): moving JSON does not throw
+        RunAlerts alerts;
+        nlohmann::json reading;                                    // the last one; null: none
+        std::map<std::size_t, std::string> raised_at, delivery;    // by alarm; the latter if there is one sentence
+        std::map<std::size_t, std::vector<std::string>> outcomes;  // of each receiver, by alarm; empty: not known yet
+        std::uint64_t generation = 0;                              // of the run: what is delivered later belongs to it
+    };
     struct Job {
         TriggerMessage message;
         std::string source, received_at;
@@ -74,6 +82,8 @@ class Alerts {
     void note(const std::string& sentence);
     void follow(int scenario, const RunAlerts& alerts);
     void send(int scenario, std::size_t number);
+    void follow_queue(std::size_t receiver, std::size_t waiting);
+    [[nodiscard]] std::string delivery_of(const Told& told, std::size_t alarm) const;
     void tell();
 
     Session& session_;
@@ -81,13 +91,8 @@ class Alerts {
     AlertSettings settings_;
     std::shared_ptr<Runs> runs_ = std::make_shared<Runs>();  // for the loop's thread alone
 
-    struct Told {  // NOLINT(bugprone-exception-escape): moving JSON does not throw
-        RunAlerts alerts;
-        nlohmann::json reading;                                  // the last one; null: none
-        std::map<std::size_t, std::string> raised_at, delivery;  // by alarm
-        std::uint64_t generation = 0;                            // of the run: what is delivered later belongs to it
-    };
     std::map<int, Told> told_;  // by scenario
+    std::vector<bool> behind_;  // receivers, which somebody has been told of
     std::uint64_t generations_ = 0;
     std::deque<std::pair<std::string, std::string>> notes_;  // time and sentence, the newest last
     std::string mqtt_state_;

@@ -1,3 +1,5 @@
+#include <cmath>
+
 #include <fmt/format.h>
 
 #include "core/try.hpp"
@@ -21,6 +23,9 @@ Result<ShareWanted> read_wanted(const std::string& body) {
     ShareWanted share;
     TALUS_ASSIGN(const auto address, twin::read_text(wanted, "address", 100));
     TALUS_ASSIGN(const auto port, twin::read_number(wanted, "port", {0, 65535, true, true}, ""));
+    if (port && *port != std::floor(*port)) {
+        return Error{fmt::format("port = {}: must be a whole number", twin::shown(wanted["port"]))};
+    }
     TALUS_ASSIGN(const auto name, twin::read_text(wanted, "name", 300));
     share.address = address.value_or("");
     share.port = static_cast<std::uint16_t>(port.value_or(0));

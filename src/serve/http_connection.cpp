@@ -205,6 +205,15 @@ std::optional<Response> HttpConnection::refusal() {
     }
     request_.role = context_.access.role_of(token);
     if (may(request_.role, needs)) return too_long();
+    if (request_.role == Role::nobody && needs == Role::trigger) {
+        return error_response(401,
+                              fmt::format("{}; header \"Authorization: Bearer TOKEN\" needs the token of triggers, "
+                                          "from the file of --trigger-token-file",
+                                          token.empty() ? "no token is given" : "the token is wrong"));
+    }
+    if (request_.role == Role::nobody && !token.empty()) {
+        return error_response(401, "the token is wrong; the server printed the right ones in its links");
+    }
     if (request_.role == Role::nobody) {
         return error_response(
             401, "a token is needed, as header \"Authorization: Bearer TOKEN\"; the server printed it in its links");

@@ -4,6 +4,8 @@
 #include <array>
 #include <cmath>
 #include <iterator>
+#include <string>
+#include <vector>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -87,8 +89,12 @@ Status read_design(const json& body, ensemble::EnsemblePlan& plan) {
     TALUS_ASSIGN(const std::string name, name_in(body, "design"));
     const auto design = stats::design_of(name);
     if (!design || *design == stats::DesignKind::grid) {
-        return Error{fmt::format("design = {}: must be one of {}, but grid", twin::shown(body["design"]),
-                                 fmt::join(stats::design_names(), ", "))};
+        std::vector<std::string> names;
+        for (const auto& known : stats::design_names()) {
+            if (stats::design_of(known) != stats::DesignKind::grid) names.emplace_back(known);
+        }
+        return Error{
+            fmt::format("design = {}: must be one of {}", twin::shown(body["design"]), fmt::join(names, ", "))};
     }
     plan.design = *design;
     return {};

@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <csignal>
 #include <cstdio>
+#include <cstring>
 #include <system_error>
 #include <unistd.h>
 #include <utility>
@@ -53,8 +55,13 @@ void end_with(Job& job, const Result<ChildOutcome>& outcome, bool stopped, bool 
         return end(job, JobState::interrupted, "talus ended before it was complete");
     }
     if (outcome->signal != 0) {
-        return end(job, JobState::failed,
-                   fmt::format("its process was ended by signal {}; is the memory full?", outcome->signal));
+        // The system ends programs by SIGKILL when the memory is full; other signals come from people or from faults.
+        const char* const why = outcome->signal == SIGKILL   ? "; is the memory full?"
+                                : outcome->signal == SIGTERM ? ": somebody or the system ended it"
+                                                             : "";
+        return end(
+            job, JobState::failed,
+            fmt::format("its process was ended by signal {} ({}){}", outcome->signal, strsignal(outcome->signal), why));
     }
     std::string said = last_error(outcome->last_words);
     end(job, JobState::failed, said.empty() ? fmt::format("exit code {}", outcome->exit_code) : std::move(said));

@@ -5,8 +5,9 @@
 #include <charconv>
 #include <chrono>
 #include <condition_variable>
+#include <cstdint>
+#include <map>
 #include <mutex>
-#include <set>
 #include <system_error>
 #include <thread>
 #include <utility>
@@ -19,6 +20,7 @@
 
 #if TALUS_MQTT
 #include <mosquitto.h>
+#include <mqtt_protocol.h>
 #endif
 
 namespace talus::serve {
@@ -45,6 +47,8 @@ Result<MqttSettings> read_mqtt_address(const std::string& address, const std::st
 
 #if TALUS_MQTT
 
+constexpr int keep_alive = 30;  // s
+
 struct MqttLink::Parts {
     MqttSettings settings;
     Listener listener;
@@ -52,8 +56,8 @@ struct MqttLink::Parts {
     std::mutex mutex;  // guards the next four
     std::condition_variable changed;
     bool connected = false, ending = false;
-    std::set<int> acknowledged;
-    std::string failure;  // of the connection, as the library puts it; of the thread
+    std::map<int, int> acknowledged;  // messages, with the broker's reason: 0x80 and above refuse
+    std::string failure;              // of the connection, as the library puts it; of the thread
     std::thread thread;
 
     [[nodiscard]] std::string listened() const { return settings.topic + "/trigger"; }
@@ -67,6 +71,7 @@ struct MqttLink::Parts {
         listener.state(now, why);
     }
     Status start();
+    Status limit_packets();
     void set_callbacks();
     void run();
     /// Connects, and serves the connection until it breaks.
@@ -90,9 +95,31 @@ Status MqttLink::Parts::start() {
         const int code = mosquitto_tls_set(client, settings.authority.c_str(), nullptr, nullptr, nullptr, nullptr);
         if (code != MOSQ_ERR_SUCCESS) return refused("certificate authority", code);
     }
+    TALUS_TRY(limit_packets());
     set_callbacks();
     mosquitto_threaded_set(client, true);  // publish() is called on another thread than the loop
     thread = std::thread([this] { run(); });
+    return {};
+}
+
+/// The broker keeps larger messages back: the library would buffer them whole before it shows them. Needs MQTT 5.
+Status MqttLink::Parts::limit_packets() {
+    constexpr std::uint32_t largest_packet = largest_trigger_message + 1024;  // topic and header beside the message
+    mosquitto_property* properties = nullptr;
+    int code = mosquitto_int_option(client, MOSQ_OPT_PROTOCOL_VERSION, MQTT_PROTOCOL_V5);
+    if (code == MOSQ_ERR_SUCCESS) {
+        code = mosquitto_property_add_int32(&properties, MQTT_PROP_MAXIMUM_PACKET_SIZE, largest_packet);
+    }
+    // A port that there is not: it keeps the properties for the connections to come, and makes none that would block.
+    if (code == MOSQ_ERR_SUCCESS) {
+        code = mosquitto_connect_bind_v5(client, settings.host.c_str(), -1, keep_alive, nullptr, properties);
+        if (code == MOSQ_ERR_INVAL) code = MOSQ_ERR_SUCCESS;
+    }
+    mosquitto_property_free_all(&properties);
+    if (code != MOSQ_ERR_SUCCESS) {
+        return Error{fmt::format("MQTT broker {}: the size of messages cannot be limited: {}", settings.shown(),
+                                 mosquitto_strerror(code))};
+    }
     return {};
 }
 
@@ -100,7 +127,9 @@ void MqttLink::Parts::set_callbacks() {
     mosquitto_connect_callback_set(client, [](mosquitto* c, void* self, int code) {
         auto& parts = *static_cast<Parts*>(self);
         if (code != 0) {
-            parts.failure = mosquitto_connack_string(code);
+            // Brokers before MQTT 5 answer with 1.
+            parts.failure = code == 1 || code == MQTT_RC_UNSUPPORTED_PROTOCOL_VERSION ? "it does not speak MQTT 5"
+                                                                                      : mosquitto_reason_string(code);
             return;
         }
         mosquitto_subscribe(c, nullptr, parts.listened().c_str(), 1);
@@ -110,14 +139,15 @@ void MqttLink::Parts::set_callbacks() {
     mosquitto_log_callback_set(client, [](mosquitto*, void* self, int level, const char* text) {
         if (level == MOSQ_LOG_ERR) static_cast<Parts*>(self)->failure = text;
     });
-    mosquitto_publish_callback_set(client, [](mosquitto*, void* self, int id) {
-        auto& parts = *static_cast<Parts*>(self);
-        {
-            const std::lock_guard lock(parts.mutex);
-            parts.acknowledged.insert(id);
-        }
-        parts.changed.notify_all();
-    });
+    mosquitto_publish_v5_callback_set(client,
+                                      [](mosquitto*, void* self, int id, int reason, const mosquitto_property*) {
+                                          auto& parts = *static_cast<Parts*>(self);
+                                          {
+                                              const std::lock_guard lock(parts.mutex);
+                                              parts.acknowledged[id] = reason;
+                                          }
+                                          parts.changed.notify_all();
+                                      });
     mosquitto_message_callback_set(client, [](mosquitto*, void* self, const mosquitto_message* message) {
         // A retained message is of unknown age: it would start a run again each time this program connects.
         if (message->retain) return;
@@ -129,7 +159,7 @@ void MqttLink::Parts::set_callbacks() {
 
 int MqttLink::Parts::serve_once(bool first) {
     using std::chrono::steady_clock;
-    constexpr int keep_alive = 30, wait = 200;  // s, ms
+    constexpr int wait = 200;  // ms
     // Over TLS the library's loop does not notice that a connection was refused.
     const auto latest_answer = steady_clock::now() + settings.answer_limit;
     int code = first ? mosquitto_connect_async(client, settings.host.c_str(), settings.port, keep_alive)
@@ -215,7 +245,9 @@ Status MqttLink::publish(const std::string& payload, std::chrono::milliseconds l
     if (code != MOSQ_ERR_SUCCESS) return Error{who + ": " + mosquitto_strerror(code)};
     lock.lock();
     const bool there = wait_for(lock, [&] { return p.acknowledged.contains(id); });
+    const int reason = there ? p.acknowledged[id] : 0;
     p.acknowledged.erase(id);
+    if (reason >= MQTT_RC_UNSPECIFIED) return Error{fmt::format("{}: {}", who, mosquitto_reason_string(reason))};
     return there ? Status() : Error{who + ": has not acknowledged the message"};
 }
 

@@ -1,5 +1,6 @@
 #include "serve/trigger_message.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <ctime>
@@ -67,6 +68,7 @@ Result<TriggerMessage> read_trigger_message(std::string_view text, WallTime now)
         return Error{fmt::format("time = {}: must be at most {} s old and {} s ahead; here it is {}", *time,
                                  oldest_message.count(), earliest_message.count(), time_text(now))};
     }
+    read.time = std::min(read.time, now);
     return read;
 }
 

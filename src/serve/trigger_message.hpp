@@ -17,7 +17,7 @@ using WallTime = std::chrono::system_clock::time_point;
 /// Bytes of a message, at most.
 inline constexpr std::size_t largest_trigger_message = 4096;
 /// How old a message may be, and how far ahead the sender's clock may be.
-inline constexpr std::chrono::seconds oldest_message{300}, earliest_message{60};
+inline constexpr std::chrono::seconds oldest_message{300}, earliest_message{5};
 
 /// What a program or a gauge sends, over HTTP or MQTT:
 /// `{"trigger": name, "values": {"volume_m3", "pore_pressure_ratio", "discharge_m3ps"}, "time": "2026-11-24T14:03:00Z",
@@ -25,7 +25,7 @@ inline constexpr std::chrono::seconds oldest_message{300}, earliest_message{60};
 struct TriggerMessage {
     std::string trigger;
     nlohmann::json values = nlohmann::json::object();
-    WallTime time;  ///< as given, or when it came
+    WallTime time;  ///< as given, or when it came if that is earlier: a value ahead would outdate those after it
     std::string reason;
 
     /// The discharge; empty: it has none, or it is no number.

@@ -13,8 +13,10 @@
 #include <boost/beast/http/read.hpp>
 #include <boost/beast/http/string_body.hpp>
 #include <boost/beast/http/write.hpp>
+#include <charconv>
 #include <openssl/ssl.h>
 #include <optional>
+#include <system_error>
 
 #include <fmt/format.h>
 
@@ -160,10 +162,14 @@ Result<WebhookTarget> read_webhook(const std::string& text) {
     if (has_port) host.erase(colon);
     if (host.starts_with('[') && host.ends_with(']')) host = host.substr(1, host.size() - 2);
     target.host = host;
-    const bool number =
-        !target.port.empty() && target.port.size() <= 5 &&
-        std::all_of(target.port.begin(), target.port.end(), [](char c) { return c >= '0' && c <= '9'; });
-    if (host.empty() || !number) return Error{"its address must be http(s)://HOST[:PORT]/PATH"};
+    unsigned port = 0;
+    const char* const end = target.port.data() + target.port.size();
+    const auto read = std::from_chars(target.port.data(), end, port);
+    const bool usable = read.ec == std::errc() && read.ptr == end && port >= 1 && port <= 65535;
+    if (host.empty() || !usable) {
+        return Error{"its address must be http(s)://HOST[:PORT]/PATH, with a port of 1 to 65535"};
+    }
+    target.port = std::to_string(port);
     target.authorization = rest;
     return target;
 }

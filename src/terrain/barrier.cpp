@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include "core/coordinate_text.hpp"
 #include "core/try.hpp"
 
 namespace talus::terrain {
@@ -55,8 +56,8 @@ Result<std::vector<PlanPoint>> find_mitres(const std::vector<PlanPoint>& line, d
 Status check_line(const Terrain& terrain, const std::vector<PlanPoint>& line) {
     for (std::size_t k = 0; k < line.size(); ++k) {
         if (std::isnan(terrain.elevation_at(line[k]))) {
-            return Error{
-                fmt::format("line: point {} at ({:.1f}, {:.1f}) is not on known ground", k + 1, line[k].x, line[k].y)};
+            return Error{fmt::format("line: point {} at ({}, {}) is not on known ground", k + 1,
+                                     coordinate_text(line[k].x), coordinate_text(line[k].y))};
         }
         if (k > 0 && distance(line[k - 1], line[k]) < 0.01) {
             return Error{fmt::format("line: points {} and {} are the same", k, k + 1)};
@@ -156,8 +157,8 @@ Result<Building> make_barrier(const Terrain& terrain, const std::string& name, c
             }
             if (std::isnan(ground)) {
                 const PlanPoint middle = between(a, b, (from + to) / 2);
-                return Error{fmt::format("line: leaves the known ground at ({:.1f}, {:.1f}), between points {} and {}",
-                                         middle.x, middle.y, k + 1, k + 2)};
+                return Error{fmt::format("line: leaves the known ground at ({}, {}), between points {} and {}",
+                                         coordinate_text(middle.x), coordinate_text(middle.y), k + 1, k + 2)};
             }
             double roof = shape.crest_elevation.value_or(ground + shape.height.value_or(0));
             highest = std::max(highest, roof - ground);

@@ -118,10 +118,11 @@ Scenario::Parts::Parts(std::shared_ptr<const scene::Scene> its_scene, ScenarioOp
     particle_spacing = scene::particle_spacing(*scene);
 }
 
-Result<std::unique_ptr<Scenario>> Scenario::open(std::shared_ptr<const scene::Scene> scene, ScenarioOptions options) {
+Result<std::unique_ptr<Scenario>> Scenario::open(std::shared_ptr<const scene::Scene> scene, ScenarioOptions options,
+                                                 const sim::Progress& progress) {
     auto parts = std::make_unique<Parts>(std::move(scene), std::move(options));
     const Setup setup = setup_of(*parts->scene, parts->next);
-    TALUS_TRY(parts->start(setup));
+    TALUS_TRY(parts->start(setup, progress));
     return std::unique_ptr<Scenario>(new Scenario(std::move(parts)));
 }
 

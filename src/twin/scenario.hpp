@@ -57,7 +57,8 @@ class Scenario {
   public:
     /// Errors: as of Run::start().
     [[nodiscard]] static Result<std::unique_ptr<Scenario>> open(std::shared_ptr<const scene::Scene> scene,
-                                                                ScenarioOptions options = {});
+                                                                ScenarioOptions options = {},
+                                                                const sim::Progress& progress = {});
     /// At the start of the session of a journal.
     [[nodiscard]] static Result<std::unique_ptr<Scenario>> open_at(const Journal& journal,
                                                                    std::shared_ptr<const scene::Scene> scene,

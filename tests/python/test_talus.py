@@ -1,18 +1,25 @@
 """The Python package on the library that was built."""
 
 import contextlib
+import copy
+import ctypes
 import dataclasses
 import enum
 import importlib.util
 import inspect
 import io
+import os
 import pathlib
+import pickle
+import signal
 import tempfile
+import threading
 import unittest
 
 import numpy as np
 
 import talus
+from talus import _library
 
 ROWS, COLUMNS = 30, 60
 
@@ -33,18 +40,81 @@ def open_slope(folder=None, **settings):
 
 
 class SimulationTest(unittest.TestCase):
-    def test_reads_debris_as_views_without_copies(self):
+    def test_reads_debris_as_arrays_that_stay_as_they_are(self):
         with open_slope() as simulation:
             x, _, _ = simulation.position
-            again, _, _ = simulation.position
-            self.assertEqual(x.ctypes.data, again.ctypes.data)
-            self.assertFalse(x.flags.owndata)
-            self.assertRaises(ValueError, x.fill, 0)
+            before = x.copy()
             self.assertAlmostEqual(len(x) * simulation.particle_volume, 100, delta=1)
             self.assertAlmostEqual(float(x.mean()) + simulation.origin[0], 10, delta=0.3)
             self.assertEqual(len(np.unique(simulation.id)), len(x))
             simulation.advance(2)
             self.assertGreater(max(float(v.max()) for v in simulation.velocity), 1)
+            depth, y = simulation.map("depth").values, simulation.position[1]
+        self.assertTrue(x.flags.owndata and depth.flags.owndata and y.flags.owndata)
+        np.testing.assert_array_equal(x, before)
+        self.assertTrue(np.isfinite(y.sum()))
+
+    def test_is_neither_copied_nor_pickled(self):
+        with open_slope() as simulation:
+            for copied in (copy.copy, copy.deepcopy, pickle.dumps):
+                with self.assertRaisesRegex(TypeError, "save"):
+                    copied(simulation)
+            simulation.step()
+
+    def test_goes_on_after_ctrl_c_as_if_nothing_had_been(self):
+        told = []
+
+        def interrupt(share):
+            told.append(share)
+            os.kill(os.getpid(), signal.SIGINT)
+
+        with open_slope() as simulation, open_slope() as undisturbed:
+            with self.assertRaises(KeyboardInterrupt):
+                simulation.advance(1000, progress=interrupt)
+            self.assertEqual(len(told), 1)
+            self.assertLess(simulation.time, 1000)
+            simulation.advance(max(5, simulation.time), told.append)
+            undisturbed.advance(simulation.time)
+            self.assertEqual(simulation.hash, undisturbed.hash)
+            self.assertEqual(told[-1], 1)
+            self.assertTrue(all(0 <= share <= 1 for share in told))
+        with self.assertRaises(KeyboardInterrupt):
+            talus.Simulation(settings={"solver.target_particle_count": 100_000}, progress=interrupt)
+
+    def test_ctrl_c_does_not_wait_for_a_long_step(self):
+        caller, interrupted, ended, after = _library.Caller(), threading.Event(), [], []
+
+        def long_step(_):
+            os.kill(os.getpid(), signal.SIGINT)
+            ended.append(interrupted.wait(30))
+
+        with self.assertRaises(KeyboardInterrupt):
+            caller(long_step)
+        self.assertEqual(ended, [])
+        interrupted.set()
+        caller(lambda _: after.append(list(ended)))
+        self.assertEqual(after, [[True]], "the next call waits for the one before it")
+        caller.close()
+
+    def test_ctrl_c_while_a_call_is_handed_over_cancels_it(self):
+        caller, interrupted, ended, after = _library.Caller(), threading.Event(), [], []
+        hand_over = caller._threads.submit
+
+        def interrupted_hand_over(*call):
+            caller._threads.submit = hand_over
+            hand_over(*call)
+            raise KeyboardInterrupt
+
+        def long_step(_):
+            ended.append(interrupted.wait(30))
+
+        caller._threads.submit = interrupted_hand_over
+        with self.assertRaises(KeyboardInterrupt):
+            caller(long_step, abandoned=lambda: after.append("freed"))
+        interrupted.set()
+        caller(lambda _: after.append(list(ended)))
+        self.assertEqual(after, ["freed", [True]])
+        caller.close()
 
     def test_reads_maps_front_and_structures(self):
         with open_slope() as simulation:
@@ -81,6 +151,60 @@ class SimulationTest(unittest.TestCase):
                 simulation.map("depht")
         with self.assertRaisesRegex(talus.InputError, "closed"):
             simulation.step()
+
+    def test_refuses_arguments_in_one_sentence_that_names_them(self):
+        elevation, release, rest = slope()
+        nan, outline = float("nan"), rest["buildings"][0].outline
+
+        def refused(sentence, **changed):
+            with self.assertRaises(talus.InputError) as caught:
+                talus.Simulation.from_arrays(**{"elevation": elevation, "release": release, **rest, **changed})
+            self.assertRegex(str(caught.exception), "^" + sentence)
+            self.assertNotRegex(str(caught.exception), "/tmp|scene.toml|\\n")
+
+        for height in (0, -3, nan, float("inf"), "6", None, True, 1e9):
+            refused(r"buildings\[0\].height = .*: must be a finite number above 0", buildings=[talus.Building(outline, height)])
+        refused(r"buildings\[0\].name = .*NUL", buildings=[talus.Building(outline, 6, "a\0b")])
+        refused(r"buildings\[0\].outline has shape", buildings=[talus.Building(outline[:2], 6)])
+        refused(r"buildings\[0\].outline .*finite", buildings=[talus.Building([(nan, 0), (1, 0), (1, 1)], 6)])
+        refused(r"buildings\[0\] must be a talus.Building", buildings=[outline])
+        refused("elevation is a masked array", elevation=np.ma.masked_array(elevation, elevation > 190))
+        refused("release has values of type complex128", release=release + 1j)
+        refused("elevation has values of type object", elevation=np.full((ROWS, COLUMNS), None))
+        refused(r"elevation\[0, 0\] = inf", elevation=np.full((ROWS, COLUMNS), 1e300))
+        refused(r"release\[2, 1\] = -1", release=np.where(np.arange(ROWS * COLUMNS).reshape(ROWS, -1) == 121, -1, release))
+        refused("cell = nan", cell=nan)
+        refused("cell = -1", cell=-1)
+        refused("x_min = nan", x_min=nan)
+        refused("crs = .*NUL", crs="EPSG:32650\0")
+        refused("crs = 32650: must be a text", crs=32650)
+        refused('crs = "EPSG:0"', crs="EPSG:0")
+        refused("folder = .*NUL", folder="a\0b")
+        refused(r"settings\['scene.title'\] = .*NUL", settings={"scene.title": "a\0b"})
+        refused(r"settings\['solver.end_time_s'\] = None", settings={"solver.end_time_s": None})
+        refused(".*solver.end_time_s", settings={"solver.end_time_s": nan})
+        with self.assertRaisesRegex(talus.InputError, "^scene = .*NUL"):
+            talus.Simulation("a\0b")
+        with self.assertRaisesRegex(talus.InputError, "/dev/zero: is a pipe, a socket or a device"):
+            talus.Simulation.from_saved("/dev/zero")
+        with open_slope() as simulation:
+            for count in (-1, 2**64, 1.5, nan, True, "1"):
+                with self.assertRaisesRegex(talus.InputError, "^count = .*: must be a whole number"):
+                    simulation.step(count)
+            for time in (-1, nan, float("inf"), "1", None, 1j, [1]):
+                with self.assertRaisesRegex(talus.InputError, "^time = .*: must be"):
+                    simulation.advance(time)
+            with self.assertRaisesRegex(talus.InputError, "^value = nan: must be a finite number"):
+                simulation.set("material.friction_coefficient", nan)
+            with self.assertRaisesRegex(talus.InputError, "^key = "):
+                simulation.set("material.friction_coefficient\0", 0.3)
+            with self.assertRaisesRegex(talus.InputError, "^height_m = nan: must be"):
+                simulation.apply("put_barrier", line=[[35, 5], [35, 25]], height_m=nan)
+            self.assertNotEqual(simulation.apply("put_barrier", line=np.array([[35, 5], [35, 25]]), height_m=np.float32(4)), "")
+            with self.assertRaisesRegex(talus.InputError, "^name = 3: must be a text"):
+                simulation.map(3)
+            self.assertEqual(simulation.step(0), talus.Phase.READY)
+            self.assertEqual(simulation.steps, 0)
 
     def test_opens_what_was_saved_and_writes_results(self):
         with tempfile.TemporaryDirectory() as name:
@@ -154,6 +278,25 @@ class OtherLibrariesTest(unittest.TestCase):
 
 
 class InterfaceTest(unittest.TestCase):
+    def test_declares_the_structs_of_the_library_that_it_has_loaded(self):
+        self.assertEqual(talus.__version__.split(".")[:2], _library.INTERFACE.split("."))
+        with self.assertRaisesRegex(ImportError, "libtalus is 0.99.1, and this package is for"):
+            _library.check_version("0.99.1")
+        with open_slope() as simulation:
+            for function, struct in {
+                "talus_get_state": _library.State, "talus_get_debris": _library.Debris, "talus_get_front": _library.Front,
+            }.items():  # fmt: skip
+                wrong = struct()
+                wrong.size = 8
+                with self.assertRaisesRegex(talus.InputError, rf"size = 8: must be sizeof, {ctypes.sizeof(struct)} "):
+                    _library.call(function, simulation._handle, ctypes.byref(wrong))
+            for wrong, function, arguments in (
+                (_library.Map(), "talus_get_map", [b"depth"]), (_library.Structure(), "talus_get_structure", [0]),
+            ):  # fmt: skip
+                size, wrong.size = wrong.size, 8
+                with self.assertRaisesRegex(talus.InputError, rf"size = 8: must be sizeof, {size} "):
+                    _library.call(function, simulation._handle, *arguments, ctypes.byref(wrong))
+
     def test_everything_public_has_a_docstring_and_type_hints(self):
         for name in talus.__all__:
             thing = getattr(talus, name)

@@ -1,9 +1,11 @@
 #include <cstdlib>
 #include <filesystem>
+#include <fstream>
 #include <netinet/in.h>
 #include <signal.h>
 #include <string>
 #include <sys/socket.h>
+#include <sys/stat.h>
 #include <unistd.h>
 #include <vector>
 
@@ -219,6 +221,25 @@ TEST(ServeCommand, the_start_page_has_the_same_options_of_triggers_and_alarms) {
         run_program({"start", "--no-browser", "--webhook-file", "nothing.txt"}, {.folder = scene.folder()});
     EXPECT_EQ(wrong.exit_code, 2);
     EXPECT_THAT(wrong.error, HasSubstr("--webhook-file nothing.txt: no such file"));
+}
+
+TEST(ServeCommand, refuses_secrets_from_a_pipe_instead_of_waiting_for_them) {
+    SmallScene scene;
+    const std::string pipe = (scene.folder() / "pipe").string();
+    ASSERT_EQ(mkfifo(pipe.c_str(), 0600), 0);
+    std::ofstream(scene.scene_file(), std::ios::app)
+        << "\n[[trigger]]\nname = \"slope\"\nrelease = \"scar\"\n"
+           "\n[[alarm]]\nname = \"moving\"\nchainage_m = 30\ndistance_m = 20\n";
+    const std::vector<std::string> broker = {"--mqtt", "localhost"};
+    for (const char* option : {"--trigger-token-file", "--webhook-file", "--mqtt-login-file", "--mqtt-ca"}) {
+        std::vector<std::string> arguments = {"serve", scene.scene_file(), "--port", "0", option, pipe};
+        if (std::string(option).starts_with("--mqtt")) {
+            arguments.insert(arguments.end(), broker.begin(), broker.end());
+        }
+        const ProgramOutcome outcome = run_program(arguments);
+        EXPECT_EQ(outcome.exit_code, 2) << option;
+        EXPECT_THAT(outcome.error, HasSubstr(std::string(option) + " " + pipe + ": is a pipe")) << outcome.error;
+    }
 }
 
 }  // namespace

@@ -42,14 +42,13 @@ class JobsTest : public StartPage {
         }
         return nullptr;
     }
-    /// The job once `good` says so, or a minute after it last got on.
+    /// The job once `good` says so; a test that fails waits until its own time is over.
     json wait(const std::string& name, const std::function<bool(const json&)>& good) {
-        json now = job(name), done = now["done"];
-        for (int i = 0; i < 1200 && !good(now); ++i) {
+        json now = job(name);
+        // What has ended changes no more.
+        while (!good(now) && now["ended_at"].is_null()) {
             std::this_thread::sleep_for(std::chrono::milliseconds(50));
             now = job(name);
-            if (now["done"] != done) i = 0;
-            done = now["done"];
         }
         EXPECT_TRUE(good(now)) << now.dump();
         return now;
@@ -168,6 +167,7 @@ TEST_F(JobsTest, what_the_command_would_refuse_is_refused_at_once_in_a_sentence)
     EXPECT_THAT(error({{"factors", {{{"key", "--output=/etc"}, {"low", 1}, {"high", 2}}}}}), HasSubstr("no key"));
     EXPECT_THAT(error({{"factors", {{{"key", "material.no_such"}, {"low", 1}, {"high", 2}}}}}), HasSubstr("no_such"));
     EXPECT_THAT(error({{"design", "grid"}}), HasSubstr("latin_hypercube"));
+    EXPECT_EQ(error({{"design", "grid"}}).find("grid", sizeof "design = \"grid\""), std::string::npos);
     EXPECT_THAT(error({{"design", "saltelli"}, {"runs", 3}}), HasSubstr("at least"));
     EXPECT_THAT(error({{"more", 1}}), HasSubstr("more"));
     EXPECT_EQ(page()["jobs"], json::array());
@@ -187,7 +187,9 @@ TEST_F(JobsTest, a_command_that_fails_or_dies_says_why) {
         return now["message"].get<std::string>();
     };
     EXPECT_EQ(outcome_of("echo 'talus: error: the disk is full' >&2; exit 1"), "the disk is full");
-    EXPECT_THAT(outcome_of("kill -9 $$"), HasSubstr("signal 9"));
+    EXPECT_THAT(outcome_of("kill -9 $$"), HasSubstr("signal 9 (Killed); is the memory full?"));
+    EXPECT_THAT(outcome_of("kill -TERM $$"), HasSubstr("signal 15 (Terminated): somebody or the system ended it"));
+    EXPECT_EQ(outcome_of("kill -SEGV $$").find("memory"), std::string::npos);
     EXPECT_THAT(outcome_of("echo '{\"event\": 7}'; echo '['; exit 2"), HasSubstr("exit code 2"));
 }
 

@@ -143,6 +143,42 @@ TEST_F(AlertsTest, messages_come_from_a_broker_and_alarms_go_to_it) {
     EXPECT_EQ(log().find("secret"), std::string::npos);
 }
 
+TEST_F(AlertsTest, a_broker_keeps_messages_over_the_limit_back) {
+    if (!Broker::installed()) GTEST_SKIP() << "mosquitto and mosquitto-clients are not installed";
+    Broker broker;
+    std::mutex mutex;
+    std::vector<std::size_t> sizes;
+    bool connected = false;
+    const auto link = serve::MqttLink::open(broker.settings(), {[&](const std::string& payload) {
+                                                                    const std::lock_guard lock(mutex);
+                                                                    sizes.push_back(payload.size());
+                                                                },
+                                                                [&](bool now, const std::string&) {
+                                                                    const std::lock_guard lock(mutex);
+                                                                    connected = now;
+                                                                }});
+    ASSERT_TRUE(link) << link.error().message;
+    ASSERT_TRUE(eventually([&] {
+        const std::lock_guard lock(mutex);
+        return connected;
+    }));
+    // The first may be lost: it subscribes while this is told.
+    ASSERT_TRUE(eventually([&] {
+        EXPECT_TRUE(broker.publish("first"));
+        const std::lock_guard lock(mutex);
+        return !sizes.empty();
+    }));
+    for (const std::size_t size : {std::size_t{100'000}, std::size_t{4096}, std::size_t{20'000}, std::size_t{3}}) {
+        ASSERT_TRUE(broker.publish(std::string(size, 'x'))) << size;
+    }
+    ASSERT_TRUE(eventually([&] {
+        const std::lock_guard lock(mutex);
+        return sizes.back() == 3;
+    }));
+    std::erase(sizes, 5);
+    EXPECT_EQ(sizes, (std::vector<std::size_t>{4096, 3}));
+}
+
 TEST_F(AlertsTest, a_broker_that_refuses_the_login_is_told_of) {
     if (!Broker::installed()) GTEST_SKIP() << "mosquitto and mosquitto-clients are not installed";
     Broker broker;
@@ -150,7 +186,7 @@ TEST_F(AlertsTest, a_broker_that_refuses_the_login_is_told_of) {
     settings.mqtt = broker.settings();
     settings.mqtt->password = "wrong";
     serve_with(std::move(settings), false);
-    ASSERT_TRUE(eventually([&] { return log().find("authoris") != std::string::npos; })) << log();
+    ASSERT_TRUE(eventually([&] { return log().find("not connected: Not authorized") != std::string::npos; })) << log();
 }
 
 TEST_F(AlertsTest, a_broker_is_reached_over_tls_if_its_certificate_is_that_of_the_authority) {

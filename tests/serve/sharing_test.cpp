@@ -111,6 +111,7 @@ TEST_F(SharingTest, what_makes_no_sense_is_refused_and_viewers_may_not) {
     EXPECT_THAT(share({{"certificate", pair.certificate}, {"key", other.key}}).body, HasSubstr("key: "));
     EXPECT_EQ(share({{"certificate", pair.certificate}}).status, 400);
     EXPECT_EQ(share({{"port", 70000}}).status, 400);
+    EXPECT_THAT(share({{"port", 1.5}}).body, ::testing::HasSubstr("port = 1.5: must be a whole number"));
     EXPECT_THAT(share({{"name", "a b"}}).body, HasSubstr("name: "));
     EXPECT_EQ(as_viewer().get("/api/share").status, 403);
     EXPECT_EQ(as_viewer().post("/api/share", {{"address", address}}).status, 403);

@@ -17,6 +17,7 @@
 #include <gmock/gmock.h>
 
 #include "core/temporary_folder.hpp"
+#include "serve/alarm_sender.hpp"
 #include "serve/alerts_fixture.hpp"
 #include "serve/certificate.hpp"
 #include "serve/mqtt_link.hpp"
@@ -173,6 +174,78 @@ TEST_F(AlertsTest, a_receiver_that_does_not_answer_holds_nothing_up_and_is_told_
     close(waits);
 }
 
+/// Alarms with a webhook that answers and a broker that is not there.
+class QueuesTest : public AlertsTest {
+  protected:
+    static serve::MqttSettings dead_broker() {
+        std::uint16_t closed = 0;
+        close(listen_anywhere(closed));
+        return *serve::read_mqtt_address(fmt::format("127.0.0.1:{}", closed), "valley", false);
+    }
+    static serve::AlarmSender::Settings sender_to(std::uint16_t port) {
+        serve::AlarmSender::Settings settings;
+        settings.webhook = *serve::read_webhook(fmt::format("http://127.0.0.1:{}/", port));
+        settings.limit = std::chrono::minutes(10);
+        return settings;
+    }
+};
+
+TEST_F(QueuesTest, a_receiver_waits_for_no_other_and_its_queue_keeps_the_oldest) {
+    auto link = serve::MqttLink::open(dead_broker(), {[](const std::string&) {}, [](bool, const std::string&) {}});
+    if (!link) GTEST_SKIP() << link.error().message;
+    Receiver receiver;
+    std::mutex mutex;
+    std::vector<serve::AlarmSender::Outcome> told;
+    const auto outcomes = [&](std::size_t of) {
+        const std::lock_guard lock(mutex);
+        std::vector<std::string> sentences;
+        for (const auto& outcome : told) {
+            if (outcome.receiver == of) sentences.push_back(outcome.sentence);
+        }
+        return sentences;
+    };
+    serve::AlarmSender sender(sender_to(receiver.port()), link->get());
+    ASSERT_EQ(sender.receivers().size(), 2U);
+    const auto send = [&](int k) {
+        sender.send(json{{"alarm", k}}.dump(), [&](const serve::AlarmSender::Outcome& outcome) {
+            const std::lock_guard lock(mutex);
+            told.push_back(outcome);
+        });
+    };
+    send(0);
+    ASSERT_TRUE(eventually([&] { return sender.waiting(1) == 0 && outcomes(0).size() == 1; }));
+    const int most = static_cast<int>(serve::AlarmSender::most_waiting);
+    for (int k = 1; k <= most + 1; ++k) {
+        send(k);
+        ASSERT_TRUE(eventually([&] { return static_cast<int>(outcomes(0).size()) == k + 1; })) << "all are posted";
+    }
+    EXPECT_EQ(receiver.taken().size(), static_cast<std::size_t>(most) + 2);
+    EXPECT_EQ(sender.waiting(1), static_cast<std::size_t>(most));
+    EXPECT_EQ(outcomes(1), std::vector<std::string>{"not sent to MQTT: 100 messages wait already"}) << "the newest";
+}
+
+TEST_F(QueuesTest, a_receiver_that_is_behind_is_told_of) {
+    std::ofstream file(scene_.scene_file(), std::ios::app);
+    for (int k = 1; k < 5; ++k) {
+        file << "\n[[alarm]]\nname = \"moving " << k << "\"\nchainage_m = 30\ndistance_m = " << 20 - k << "\n";
+    }
+    file.close();
+    Receiver receiver;
+    serve::AlertSettings settings;
+    settings.mqtt = dead_broker();
+    settings.sender = sender_to(receiver.port());
+    serve_with(std::move(settings));
+    if (!server_) GTEST_SKIP() << "built without MQTT";
+    act({{"action", "set_speed"}, {"factor", nullptr}});
+    ASSERT_EQ(as_trigger().post("/api/trigger", {{"trigger", "slope"}}).status, 200);
+    ASSERT_TRUE(eventually([&] { return receiver.taken().size() == 5; })) << alerts().dump();
+    ASSERT_TRUE(eventually([&] {
+        return alerts()["notes"].dump().find("MQTT is behind: 3 alarms wait for it") != std::string::npos;
+    })) << alerts().dump();
+    EXPECT_THAT(alerts()["alarms"][0]["delivery"].get<std::string>(),
+                ::testing::MatchesRegex("sent to 127.0.0.1:[0-9]+; is being sent to MQTT"));
+}
+
 /// Takes posts over TLS and answers them with 200.
 class TlsReceiver {
   public:
@@ -242,7 +315,8 @@ TEST(Webhook, goes_over_tls_only_to_a_host_whose_certificate_is_valid) {
 
 TEST_F(AlertsTest, an_address_that_cannot_be_used_is_refused_without_repeating_it) {
     for (const char* text : {"", "ftp://secret/", "https://", "http://user:secret@host/", "http://host:port/secret",
-                             "http://host/sec ret", "http://host:1234567/secret"}) {
+                             "http://host/sec ret", "http://host:1234567/secret", "http://host:0/secret",
+                             "http://host:99999/secret", "http://host:65536/", "http://host:1.5/", "http://host:/"}) {
         const auto target = serve::read_webhook(text);
         ASSERT_FALSE(target) << text;
         EXPECT_EQ(target.error().message.find("secret"), std::string::npos) << target.error().message;

@@ -131,6 +131,48 @@ TEST_F(Web, what_is_not_in_the_protocol_ends_the_connection) {
     EXPECT_FALSE(good.wait_for("hello").is_null());
 }
 
+/// A frame byte by byte: the first two, then the rest.
+std::string frame_of(unsigned first, unsigned second, const std::string& rest) {
+    return std::string{static_cast<char>(first), static_cast<char>(second)} + rest;
+}
+
+TEST_F(Web, frames_that_the_protocol_forbids_end_the_connection_and_no_other) {
+    WebSocket other = join(viewer);
+    ASSERT_FALSE(other.wait_for("hello").is_null());
+    const std::string mask(4, '\0'), big("\0\0\0\0\xff\xff\xff\xff", 8);
+    const std::pair<const char*, std::string> wrong[] = {
+        {"without a mask", frame_of(0x81, 2, "{}")},
+        {"with reserved bits", frame_of(0xf1, 0x82, mask + "{}")},
+        {"of an unknown kind", frame_of(0x83, 0x82, mask + "{}")},
+        {"that continues nothing", frame_of(0x80, 0x82, mask + "{}")},
+        {"of text within a text", frame_of(0x01, 0x81, mask + "{") + frame_of(0x81, 0x81, mask + "}")},
+        {"a ping in two pieces", frame_of(0x09, 0x81, mask + "x")},
+        {"a ping that is too long", frame_of(0x89, 0xfe, std::string("\0\x80", 2) + mask + std::string(128, 'x'))},
+        {"of 4 GiB", frame_of(0x81, 0xff, big + mask)},
+        {"of a length below 0", frame_of(0x81, 0xff, std::string(8, '\xff') + mask)},
+        {"of a length that is not the shortest", frame_of(0x81, 0xfe, std::string("\0\x02", 2) + mask + "{}")},
+        {"that is no UTF-8", frame_of(0x81, 0x82, mask + "\xc3\x28")},
+        {"that closes with half a code", frame_of(0x88, 0x81, mask + "\x03")},
+    };
+    for (const auto& [what, bytes] : wrong) {
+        WebSocket eye = join(viewer);
+        ASSERT_FALSE(eye.wait_for("hello").is_null());
+        eye.socket().send(bytes);
+        EXPECT_TRUE(eye.wait_for("never", Milliseconds(3000)).is_null());
+        EXPECT_TRUE(eye.ended()) << what;
+    }
+    // A message in pieces without end is limited as one in one piece is.
+    WebSocket eye = join(viewer);
+    ASSERT_FALSE(eye.wait_for("hello").is_null());
+    const std::string kilobyte = frame_of(0, 0xfe, std::string("\x04\0", 2) + mask + std::string(1024, ' '));
+    eye.socket().send(frame_of(0x01, 0x81, mask + " "));
+    for (int k = 0; k < 100; ++k) eye.socket().send(kilobyte);
+    EXPECT_TRUE(eye.wait_for("never", Milliseconds(3000)).is_null());
+    EXPECT_TRUE(eye.ended());
+    EXPECT_FALSE(other.ended());
+    EXPECT_EQ(as_viewer().get("/api/session").status, 200);
+}
+
 TEST_F(Web, marks_and_names_reach_the_others) {
     WebSocket ada = join(controller, "Ada"), bo = join(viewer, "Bo");
     ASSERT_FALSE(ada.wait_for("hello").is_null());

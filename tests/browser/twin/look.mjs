@@ -151,8 +151,14 @@ async function playFilm(data) {
     video.currentTime = share * video.duration;
     await new Promise((resolve) => (video.onseeked = resolve));
     const context = new OffscreenCanvas(video.videoWidth, video.videoHeight).getContext("2d");
-    context.drawImage(video, 0, 0);
-    const { data: pixels } = context.getImageData(0, 0, video.videoWidth, video.videoHeight);
+    // The picture may come a little after the event: until it is another one than before.
+    let pixels;
+    for (let tries = 0; tries < 100; ++tries) {
+      context.drawImage(video, 0, 0);
+      pixels = context.getImageData(0, 0, video.videoWidth, video.videoHeight).data;
+      if (pixels.reduce((sum, value, k) => (k % 4 === 0 ? sum + value : sum), 0) !== pictures.at(-1)?.sum) break;
+      await new Promise(requestAnimationFrame);
+    }
     const colours = new Set();
     let [sum, white, low] = [0, 0, 0];
     for (let k = 0; k < pixels.length; k += 4) {

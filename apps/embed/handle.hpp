@@ -1,0 +1,61 @@
+#pragma once
+
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "call.hpp"
+#include "core/grid.hpp"
+#include "core/try.hpp"
+#include "twin/scenario.hpp"
+
+namespace talus::embed {
+
+/// What the pointers that are returned point to, beside the scenario. Each answer is made once, so that reading leaves
+/// earlier answers valid, and forgotten with the next change.
+struct Answers {
+    std::optional<std::string> message;
+    std::map<std::string, std::string, std::less<>> json;
+    std::map<std::string, Grid<float>, std::less<>> maps;
+    std::map<std::size_t, std::string> structure_names;
+    struct Front {
+        std::vector<double> chainage, arrival_time, velocity;
+    };
+    std::optional<Front> front;
+    std::string created;
+};
+
+}  // namespace talus::embed
+
+struct talus_simulation {
+    std::unique_ptr<talus::twin::Scenario> scenario;
+    bool can_be_saved = true;
+    bool changing = false;  ///< a call that changes it has not returned
+    mutable talus::embed::Answers answers = {};
+};
+
+namespace talus::embed {
+
+/// The time of a call that changes a simulation.
+class Changing {
+  public:
+    [[nodiscard]] static Status check(const talus_simulation* simulation) {
+        TALUS_TRY(need(simulation, "simulation"));
+        if (simulation->changing) return Error{"simulation: a call that changes it has not returned yet"};
+        return {};
+    }
+    explicit Changing(talus_simulation& simulation) : simulation_(simulation) {
+        simulation_.changing = true;
+        simulation_.answers = {};
+    }
+    ~Changing() { simulation_.changing = false; }
+    Changing(const Changing&) = delete;
+    Changing& operator=(const Changing&) = delete;
+
+  private:
+    talus_simulation& simulation_;
+};
+
+}  // namespace talus::embed
