@@ -22,6 +22,7 @@
 #include "geo/json_text.hpp"
 #include "handle.hpp"
 #include "scene/builtin.hpp"
+#include "scene/bundle.hpp"
 #include "scene/scene.hpp"
 #include "scene_folder.hpp"
 #include "twin/journal.hpp"
@@ -78,6 +79,19 @@ Result<talus::scene::Scene> load_builtin(const std::vector<std::string>& setting
     const talus::TemporaryFolder unpacked;
     if (unpacked.path().empty()) return Error{"cannot make a temporary folder for the built-in scene; set TMPDIR"};
     return talus::scene::load_builtin_scene(unpacked.path(), settings);
+}
+
+/// The scene of a saved simulation. Somebody else may have saved it: its settings name no file that the scene does not.
+Result<talus::scene::Scene> load_saved(const talus::twin::Journal& journal) {
+    if (!journal.scene_file.starts_with("built-in:")) {
+        TALUS_TRY(talus::scene::check_saved_overrides(journal.scene_file, journal.overrides));
+        return talus::scene::load_scene(journal.scene_file, journal.overrides);
+    }
+    const talus::TemporaryFolder unpacked;
+    if (unpacked.path().empty()) return Error{"cannot make a temporary folder for the built-in scene; set TMPDIR"};
+    TALUS_ASSIGN(const fs::path scene, talus::scene::unpack_builtin_scene(unpacked.path()));
+    TALUS_TRY(talus::scene::check_saved_overrides(scene, journal.overrides));
+    return load_builtin(journal.overrides);
 }
 
 /// The text of a file that was saved.
@@ -253,10 +267,7 @@ int talus_open_saved(const char* file, const talus_progress* progress, talus_sim
             const auto journal = talus::twin::read_journal(text);
             if (!journal) return Error{fmt::format("{}: {}", file, journal.error().message)};
             if (!watch.go_on(0)) return {};
-            const bool builtin = journal->scene_file.starts_with("built-in:");
-            TALUS_ASSIGN(talus::scene::Scene scene,
-                         builtin ? load_builtin(journal->overrides)
-                                 : talus::scene::load_scene(journal->scene_file, journal->overrides));
+            TALUS_ASSIGN(talus::scene::Scene scene, load_saved(*journal));
             for (const std::string& changed : talus::twin::changed_inputs(*journal, scene)) return Error{changed};
             if (!watch.go_on(0)) return {};
             auto again = talus::twin::replay(

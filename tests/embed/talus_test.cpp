@@ -2,7 +2,11 @@
 #include <cmath>
 #include <cstddef>
 #include <dlfcn.h>
+#include <fstream>
+#include <iterator>
 #include <limits>
+#include <regex>
+#include <string>
 #include <thread>
 #include <utility>
 
@@ -146,6 +150,26 @@ TEST(Library, opens_what_was_saved_in_the_same_state) {
     const Slope slope;
     EXPECT_EQ(talus_open_arrays(&slope.arrays, scene.c_str(), nullptr, 0, nullptr, &from_file, &error),
               TALUS_BAD_INPUT);
+}
+
+TEST(Library, opens_no_saved_simulation_whose_settings_name_another_file) {
+    const Folder folder;
+    const fs::path scene = folder.path / "scene", file = folder.path / "saved.json";
+    talus_error error = TALUS_SIZED(talus_error);
+    {
+        const Simulation simulation = Slope().open(scene.c_str());
+        ASSERT_EQ(talus_save(simulation.get(), file.c_str(), &error), TALUS_OK) << error.text;
+    }
+    std::ifstream saved(file);
+    const std::string text{std::istreambuf_iterator<char>(saved), {}};
+    std::ofstream(file) << std::regex_replace(text, std::regex(R"("overrides"\s*:\s*\[)"),
+                                              R"("overrides": ["terrain.file=/etc/passwd")");
+    talus_simulation* none = nullptr;
+    ASSERT_EQ(talus_open_saved(file.c_str(), nullptr, &none, &error), TALUS_BAD_INPUT);
+    EXPECT_NE(std::string(error.text).find("terrain.file: the session sets a file that its scene does not name, "
+                                           "/etc/passwd"),
+              std::string::npos)
+        << error.text;
 }
 
 TEST(Library, has_symbols_of_the_version_that_its_header_says) {
