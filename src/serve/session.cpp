@@ -54,6 +54,7 @@ void Session::close() {
 }
 
 Status Session::open(twin::ScenarioOptions options, std::function<void(std::string)> failed) {
+    TALUS_ASSIGN(id_, random_token());
     TALUS_ASSIGN(loop_, Loop::start(scene_, std::move(options), *this, std::move(failed)));
     return {};
 }
@@ -61,6 +62,7 @@ Status Session::open(twin::ScenarioOptions options, std::function<void(std::stri
 json Session::describe(Role role) const {
     json session = people_.to_json();
     session["protocol"] = protocol_version;
+    session["id"] = id_;
     session["program"] = "talus " TALUS_VERSION;
     session["title"] = scene_->spec.scene.title;
     session["you"] = {{"role", role_name(role)}};

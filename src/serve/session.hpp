@@ -111,6 +111,7 @@ class Session final : public Watcher {
     [[nodiscard]] Clock::duration people_interval() const;
 
     Thread thread_;
+    std::string id_;
     std::shared_ptr<const scene::Scene> scene_;
     Tokens tokens_;
     People people_;

@@ -15,6 +15,7 @@ import { testControls } from "./twin/controls.mjs";
 import { testParts } from "./twin/parts.mjs";
 import { testPhoto } from "./twin/photo.mjs";
 import { testReadings } from "./twin/readings.mjs";
+import { testRestart } from "./twin/restart.mjs";
 import { testScenarios } from "./twin/scenarios.mjs";
 import { testSharing } from "./twin/sharing.mjs";
 import { testStart } from "./twin/start.mjs";
@@ -44,7 +45,7 @@ setTimeout(() => {
   process.exit(1);
 }, 1_100_000).unref();
 const run = new Run(browser, resolve(output), command, process.env.TALUS_ONLY);
-const parts = { controls: testControls, readings: testReadings, scenarios: testScenarios, barrier: testBarrier, parts: testParts, erosion: testErosion, ground: testGround, look: testLook, photo: testPhoto,
+const parts = { controls: testControls, readings: testReadings, restart: testRestart, scenarios: testScenarios, barrier: testBarrier, parts: testParts, erosion: testErosion, ground: testGround, look: testLook, photo: testPhoto,
   backanalysis: testBackanalysis, depth_averaged: testDepthAveraged, sharing: testSharing, start: testStart, triggers: testTriggers };
 try {
   for (const part of (process.env.TALUS_PARTS ?? Object.keys(parts).join()).split(",")) {

@@ -34,9 +34,11 @@ import { Trails } from "./scene/natural/trails";
 import { Stage } from "./scene/stage";
 import { watchAll } from "./state/cell";
 import { paneText } from "./state/differences";
+import { takeFormer, whatIsGone, type FormerSession } from "./state/former_session";
 import { Playback } from "./state/playback";
 import { Refresher } from "./state/refresher";
 import { Twin } from "./state/twin";
+import { dialog, openDialog } from "./ui/dialog";
 import { button, h } from "./ui/dom";
 import { sheetHandle } from "./ui/sheet";
 import { tabs } from "./ui/tabs";
@@ -47,7 +49,21 @@ export function openPage(page: HTMLElement, token: string, info: SceneInfo, terr
   const twin = new Twin(token, info, new Relief(terrain, info.origin), api, place);
   buildPage(page, twin);
   for (const note of place.notes ?? []) twin.notice(note, "error");
+  const former = takeFormer();
+  if (former) tellFormer(former, place);
+  twin.connection.watch(({ state }) => {
+    if (state === "refused") openDialog(dialog("This link is no longer valid", h("p", { class: "hint" },
+      "talus was started again, with new links: ask for the present one. The session that this page shows has ended; what was not saved is gone.")));
+  });
   twin.live.start();
+}
+
+function tellFormer(former: FormerSession, place: StartPage): void {
+  const saved = place.available && place.role === "controller"
+    ? button("Saved sessions", { class: "primary", onclick: () => location.assign("#start") }) : null;
+  openDialog(dialog("This session is new", h("p", { class: "hint" }, whatIsGone(former)),
+    saved ? null : h("p", { class: "hint" }, "A session that was saved as a file is opened by talus start with the name of the file."),
+    h("div", { class: "row answers" }, saved)));
 }
 
 function buildPage(page: HTMLElement, twin: Twin): void {

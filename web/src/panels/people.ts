@@ -43,7 +43,7 @@ export function people(twin: Twin): HTMLElement {
     control.disabled = waiting;
     const { state, retryIn_s } = twin.connection.value;
     connection.hidden = state === "open";
-    const sentence = state === "lost" ? (retryIn_s > 0 ? `Connection lost. Reconnecting in ${retryIn_s} s.` : "Reconnecting …") : "Connecting …";
+    const sentence = state === "refused" ? "This link is no longer valid." : state === "lost" ? (retryIn_s > 0 ? `Connection lost. Reconnecting in ${retryIn_s} s.` : "Reconnecting …") : "Connecting …";
     if (connection.textContent !== sentence) connection.replaceChildren(h("span", {}, sentence));
     const asked = mine ? twin.request.value : null;
     if (!asked) request.replaceChildren();

@@ -9,6 +9,8 @@ export interface LiveEvents {
   message(message: ServerMessage): void;
   frame(frame: Frame): void;
   connection(connection: Connection, retryInSeconds: number): void;
+  /** Asked after a break, before it connects again: a server that refuses a WebSocket cannot say why. False: for good. */
+  mayReturn(): Promise<boolean>;
 }
 
 const firstWait_s = 0.5;
@@ -53,7 +55,7 @@ export class Live {
       if (this.socket !== socket) return;
       this.socket = null;
       this.events.connection("lost", this.wait_s);
-      this.timer = window.setTimeout(() => this.start(), this.wait_s * 1000);
+      this.timer = window.setTimeout(() => void this.again(), this.wait_s * 1000);
       this.wait_s = Math.min(2 * this.wait_s, longestWait_s);
     };
   }
@@ -61,7 +63,7 @@ export class Live {
   retry(): void {
     if (this.socket) return;
     clearTimeout(this.timer);
-    this.start();
+    void this.again();
   }
   /** Drops the connection as a break in the network would; it reconnects by itself. */
   drop(): void {
@@ -79,6 +81,11 @@ export class Live {
     this.send({ type: "name", name });
   }
 
+  private async again(): Promise<void> {
+    this.events.connection("lost", 0);
+    if (await this.events.mayReturn()) this.start();
+    else this.events.connection("refused", 0);
+  }
   private send(message: object): void {
     if (this.socket?.readyState === WebSocket.OPEN) this.socket.send(JSON.stringify(message));
   }

@@ -11,6 +11,8 @@ export interface Person { id: string; name: string; role: Role; colour: string; 
 export interface You { id: string; name: string; role: Role; colour: string; secret: string }
 export interface Session {
   protocol: number;
+  /** Another one after a restart of the server. */
+  id: string;
   program: string;
   title: string;
   scenarios: ScenarioName[];

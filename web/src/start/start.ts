@@ -3,6 +3,7 @@ import "../style/start.css";
 import mark from "../style/mark.svg";
 import { Refused, type Api } from "../protocol/api";
 import type { Job, KnownScene, SavedSession, StartPage } from "../protocol/start";
+import { takeFormer, whatIsGone } from "../state/former_session";
 import { askFor } from "../ui/dialog";
 import { button, h, icon } from "../ui/dom";
 import { save } from "../ui/save";
@@ -35,6 +36,8 @@ class Start {
   private readonly toasts = new Toasts();
   private readonly state = h("div", { class: "start-state", "aria-live": "polite" });
   private readonly lists = h("div", { class: "start-lists" });
+  /** A session that is gone. */
+  private readonly former = h("div", { class: "start-state" });
   /** A new scene, while one is made. */
   private readonly making = h("div", {});
   private readonly back = h("div", { class: "start-back" });
@@ -52,8 +55,9 @@ class Start {
     const home = h("div", { class: "start-page" },
       h("header", { class: "start-head" }, h("img", { src: mark, alt: "", width: 44, height: 44 }),
         h("div", {}, h("h1", {}, "talus"), h("p", { class: "muted" }, "Landslides and debris flows on real terrain, live in the browser")), this.back),
-      this.state, this.making, this.lists, this.foot);
+      this.former, this.state, this.making, this.lists, this.foot);
     page.replaceChildren(h("main", { class: "start-scroll" }, home), this.toasts.polite, this.toasts.urgent);
+    this.tellFormer();
     this.show(now);
     void this.watch();
   }
@@ -64,8 +68,8 @@ class Start {
       let next: StartPage;
       try {
         next = await this.api.start();
-      } catch {
-        this.lost();
+      } catch (error) {
+        this.lost(error);
         continue;
       }
       // A scene that somebody has opened is where everybody goes.
@@ -74,7 +78,20 @@ class Start {
     }
   }
 
-  private lost(): void {
+  /** Of the saved sessions the newest of the same scene is offered. */
+  private tellFormer(): void {
+    const former = takeFormer();
+    if (former === null) return;
+    const saved = (this.now.sessions ?? []).filter((s) => s.title === former.title).sort((a, b) => b.saved_at.localeCompare(a.saved_at))[0];
+    this.former.replaceChildren(h("div", { class: "card bad former", role: "alert" }, h("b", {}, "talus was started again"), h("p", {}, whatIsGone(former)),
+      saved ? h("div", { class: "row answers" }, button(`Open “${saved.name}”, saved ${dateText(saved.saved_at)}`, { class: "primary", onclick: () => void this.open({ session: saved.id }, saved.name) })) : null));
+  }
+  private lost(error: unknown): void {
+    if (error instanceof Refused && error.status === 401) {
+      this.state.replaceChildren(h("div", { class: "card bad", role: "alert" }, h("b", {}, "This link is no longer valid"),
+        h("p", {}, "talus was started again, with new links: open the present one.")));
+      return;
+    }
     this.state.replaceChildren(h("div", { class: "card bad", role: "alert" }, h("b", {}, "talus does not answer"),
       h("p", {}, "It has ended, or it is busy. Start it again with talus, or from the menu.")));
   }

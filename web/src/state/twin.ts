@@ -12,6 +12,7 @@ import type { BarrierSet } from "./barriers";
 import { usualBed, usualZone, type ZoneSet } from "./ground";
 import { usualHydrograph } from "./inflows";
 import { runKey, runKeys } from "./alerts";
+import { keepFormer } from "./former_session";
 import { stateAt } from "./past";
 
 export interface ScenarioCells {
@@ -98,6 +99,8 @@ export class Twin {
 
   readonly api: Api;
   readonly live: Live;
+  /** The one that this page shows, as the server names it. */
+  private session: string | null = null;
   private beginning: Promise<unknown> = Promise.resolve();
   private readonly frameReaders: ((frame: Frame) => void)[] = [];
   private readonly noticeHandlers: ((sentence: string, kind: "error" | "done") => void)[] = [];
@@ -113,7 +116,25 @@ export class Twin {
         this.connection.value = { state, retryIn_s };
         if (state !== "open") this.api.secret = null;
       },
+      mayReturn: () => this.mayReturn(),
     });
+  }
+  private async mayReturn(): Promise<boolean> {
+    try {
+      const place = await this.api.start();
+      if (place.available && place.open === null) {
+        this.leave();
+        return false;
+      }
+    } catch (error) {
+      return !(error instanceof Refused && (error.status === 401 || error.status === 403));
+    }
+    return true;  // hello tells which session it is
+  }
+  /** To the session that is open now, or to the start page, where the person is told what is gone. */
+  private leave(): void {
+    keepFormer({ title: this.scene.title, runs: this.scenarios.value.map((scenario) => ({ scenario, time_s: this.cells[scenario].state.value?.time_s ?? 0 })) });
+    location.reload();
   }
   /** A map layer and a surface by depth or speed are always drawn in the colours of their legends. */
   get natural(): boolean {
@@ -181,6 +202,7 @@ export class Twin {
   }
   /** Why this person cannot make changes now; null: they can. */
   get hindrance(): string | null {
+    if (this.connection.value.state === "refused") return "This link is no longer valid.";
     if (this.connection.value.state !== "open") return "The connection is lost; reconnecting automatically.";
     const you = this.you.value;
     if (you === null) return "Joining the session.";
@@ -260,6 +282,8 @@ export class Twin {
   private hear(message: ServerMessage): void {
     switch (message.type) {
       case "hello":
+        if (this.session !== null && this.session !== message.session.id) return this.leave();
+        this.session = message.session.id;
         this.you.value = message.you;
         this.api.secret = this.live.secret = message.you.secret;
         this.controller.value = message.session.controller;
