@@ -22,6 +22,7 @@
 #include "run/run_scene.hpp"
 #include "run/second_opinion.hpp"
 #include "run/variants.hpp"
+#include "run/words.hpp"
 #include "scene/builtin.hpp"
 #include "scene_input.hpp"
 #include "summary.hpp"
@@ -102,7 +103,7 @@ std::string text_of(const report::BothModels& models, const std::vector<std::str
     for (const auto& [name, result] :
          {std::pair{"particles", &models.particles}, {"depth-averaged", &models.depth_averaged}}) {
         const run::RunVerdict verdict = judge(*result);
-        if (!verdict.within_limits()) text += fmt::format("  {} {}\n", name, verdict.text());
+        if (!verdict.within_limits()) text += fmt::format("  {} {}\n", name, run::uncapitalised(verdict.text()));
         for (const std::string& warning : verdict.warnings()) text += "    " + warning + "\n";
     }
     for (const std::string& sentence : differences) text += "  " + sentence + "\n";

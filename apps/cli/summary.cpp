@@ -13,6 +13,7 @@
 #include "products/results_json.hpp"
 #include "report/results.hpp"
 #include "run/verdict.hpp"
+#include "run/words.hpp"
 #include "sim/compression.hpp"
 #include "variant_plan.hpp"
 #include "zoom_text.hpp"
@@ -81,8 +82,8 @@ std::string remedy(const params::SolverSpec& solver) {
 
 std::string moving_text(const run::StillMoving& moving, double deposited_speed) {
     if (!(moving.volume > 0)) return fmt::format("nothing faster than {:.3g} m/s", deposited_speed);
-    return fmt::format("{:.3g} m3 ({:.3g} % of the debris), at up to {:.2g} m/s", moving.volume, 100 * moving.share,
-                       moving.greatest_speed);
+    return fmt::format("{} m3 ({} % of the debris), at up to {} m/s", run::rounded(moving.volume, 3),
+                       run::rounded(100 * moving.share, 3), run::rounded(moving.greatest_speed, 2));
 }
 
 std::string line(const char* label, const std::string& text) {
@@ -90,8 +91,8 @@ std::string line(const char* label, const std::string& text) {
 }
 
 std::string verdict_text(const scene::Scene& scene, const run::RunVerdict& verdict) {
-    if (verdict.within_limits()) return line("verdict", verdict.text());
-    std::string text = line("VERDICT", verdict.text());
+    if (verdict.within_limits()) return line("verdict", run::uncapitalised(verdict.text()));
+    std::string text = line("VERDICT", run::uncapitalised(verdict.text()));
     for (const run::Check& check : verdict.checks) {
         if (check.state != run::CheckState::beyond) continue;
         text += line("", check.text + (check.key == "compression" ? remedy(scene.spec.solver) : ""));
@@ -139,13 +140,15 @@ std::string summary_text(const scene::Scene& scene, const run::RunResult& result
     }
     for (const params::ObservationSpec& observed : scene.spec.observations) {
         const observe::FrontSample front = front_at(seen, observed.chainage);
-        const std::string computed = report::outside_zoom(scene, result, observed.chainage) ? "outside the zoom"
-                                     : std::isnan(front.arrival_time)
-                                         ? "not reached"
-                                         : fmt::format("{}, debris there {}", speed_text(front.front_velocity),
-                                                       speed_text(front.particle_speed));
-        text += line("front velocity", fmt::format("at {:g} m: {}; observed {:g} m/s", observed.chainage, computed,
-                                                   observed.front_velocity));
+        const std::string computed =
+            report::outside_zoom(scene, result, observed.chainage) ? "outside the zoom"
+            : std::isnan(front.arrival_time)                       ? "not reached"
+            : observed.debris_speed
+                ? fmt::format("{}, front {}", speed_text(front.particle_speed), speed_text(front.front_velocity))
+                : fmt::format("{}, debris there {}", speed_text(front.front_velocity),
+                              speed_text(front.particle_speed));
+        text += line(observed.debris_speed ? "debris speed" : "front velocity",
+                     fmt::format("at {:g} m: {}; observed {:g} m/s", observed.chainage, computed, observed.value()));
     }
     if (const observe::RunOut& r = seen.run_out; std::isfinite(r.along_flow)) {
         text += line("run-out", fmt::format("{}{:.0f} m along the flow, {:.0f} m straight, drop {:.0f} m, runout angle "
@@ -190,7 +193,8 @@ std::string summary_json(const scene::Scene& scene, const run::RunResult& result
         const observe::FrontSample front = front_at(seen, observed.chainage);
         observations.push_back({{"name", observed.name},
                                 {"chainage_m", observed.chainage},
-                                {"observed_front_velocity_mps", observed.front_velocity},
+                                {"quantity", observed.key()},
+                                {"observed_mps", observed.value()},
                                 {"front_velocity_mps", number_or_null<nlohmann::ordered_json>(front.front_velocity)},
                                 {"particle_speed_mps", number_or_null<nlohmann::ordered_json>(front.particle_speed)},
                                 {"arrival_time_s", number_or_null<nlohmann::ordered_json>(front.arrival_time)}});

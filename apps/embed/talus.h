@@ -15,8 +15,8 @@
  * Pointers: all that is returned, texts as well as arrays, belongs to the simulation and remains valid until the next
  * call that takes it without const. Reading takes it with const: it leaves everything valid.
  *
- * Sizes: `size` of a struct is sizeof that struct, set by the caller before every use: TALUS_SIZED does it. With it a
- * struct can get more members in a later version; those that the caller does not have are neither read nor written.
+ * Sizes: `size` of a struct is sizeof that struct, set by the caller before every use: TALUS_SIZED does it. A struct
+ * that is smaller than that of this version is refused; of a larger one only what this version has is read and written.
  */
 #ifndef TALUS_H
 #define TALUS_H

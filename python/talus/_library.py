@@ -163,6 +163,12 @@ def call(name: str, *arguments: object) -> None:
     raise {2: InputError, 3: FaultError}.get(code, TalusError)(text)
 
 
+def _until_done(future: concurrent.futures.Future[Any], meanwhile: Callable[[], object] = lambda: None) -> None:
+    # Ten times a second: a signal that comes just before a thread begins to wait does not wake it.
+    while not concurrent.futures.wait([future], 0.1).done:
+        meanwhile()
+
+
 class Caller:
     """Makes the long calls of a simulation, one after another, on a thread of its own: the thread that waits for them is
     free to see Ctrl-C, or whatever else a signal raises. Then the call is cancelled."""
@@ -171,13 +177,16 @@ class Caller:
 
     def __init__(self) -> None:
         self._threads = concurrent.futures.ThreadPoolExecutor(1, "talus")
-        self._last: concurrent.futures.Future[None] | None = None
+        # A signal may come while a call is handed over. The one thread is there from now on, and takes what it is given in
+        # turn: whatever of the handing over was done, the next call waits for this one.
+        self._threads.submit(int).result()
+        self._at_rest = True
 
     def wait(self) -> None:
         """Until no call is being made."""
-        if self._last is not None:
-            concurrent.futures.wait([self._last])
-            self._last = None
+        if not self._at_rest:
+            _until_done(self._threads.submit(int))
+            self._at_rest = True
 
     def __call__(
         self,
@@ -197,21 +206,19 @@ class Caller:
             return int(cancelled.is_set())
 
         watch = Progress(_progress_call(tell), None)
-        self._last = future = self._threads.submit(work, ctypes.byref(watch))
+        self._at_rest = False
         try:
-            if progress is None:
-                future.result()
-            else:
-                while not concurrent.futures.wait([future], 0.1).done:
-                    progress(share)
-                future.result()
+            future = self._threads.submit(work, ctypes.byref(watch))
+            _until_done(future, lambda: progress and progress(share))
+            future.result()
+            if progress is not None:
                 progress(1.0)
         except BaseException:
             cancelled.set()
-            if abandoned is not None:
-                future.add_done_callback(lambda _: abandoned())
-            concurrent.futures.wait([future], self._patience)
+            last = self._threads.submit(abandoned or int)
+            concurrent.futures.wait([last], self._patience)
             raise
+        self._at_rest = True
 
     def close(self) -> None:
         """Waits for the last call; none can be made any more."""

@@ -245,7 +245,8 @@ double Solver::advance_stage(bool second) {
     const double halfway = pore_pressure_left_ * (decay > 0 ? std::exp(-time_step_ / (2 * decay)) : 1);
     data.pore_pressure_left = static_cast<float>(halfway);
     data.fresh_pore_pressure = static_cast<float>(material_.pore_pressure_ratio / std::max(halfway, 1e-30));
-    data.cover = {pointer(friction_), pointer(inverse_turbulence_), pointer(strength_), pointer(stem_drag_)};
+    data.cover = {pointer(friction_), pointer(inverse_turbulence_), pointer(strength_), pointer(stem_drag_),
+                  pointer(viscosity_)};
     data.highest_line = static_cast<float>(highest_line_);
     data.structure = pointer(structure_);
     data.inflow = {pointer(inflow_.depth), pointer(inflow_.momentum_x), pointer(inflow_.momentum_y),
@@ -333,6 +334,7 @@ double Solver::bytes_per_cell() const {
                                             &inverse_turbulence_,
                                             &strength_,
                                             &stem_drag_,
+                                            &viscosity_,
                                             &structure_,
                                             &pore_pressure_,
                                             &next_pore_pressure_,

@@ -32,7 +32,7 @@ struct Material {
 /// Where the ground differs: a value per cell, NaN as elsewhere; no cells: nowhere.
 struct GroundValues {
     std::vector<float> friction_coefficient, inverse_turbulent_friction, cohesion;  ///< 1, s2/m, Pa
-    std::vector<float> stem_drag;                                                   ///< 1/m
+    std::vector<float> stem_drag, laminar_viscosity;                                ///< 1/m, m2/s
     std::vector<float> structure;  ///< 1: a structure, whose top is the bed; debris passes only over that. 0: none
 };
 
@@ -211,7 +211,7 @@ class Solver {
     std::vector<float> pore_pressure_, next_pore_pressure_;
     std::vector<float> height_, climb_, next_height_, next_climb_;  ///< see Motion; empty: debris does not fly
     double drained_from_ = 0, pore_pressure_left_ = 1;              ///< s; what is left of the pressure of then
-    std::vector<float> friction_, inverse_turbulence_, strength_, stem_drag_,
+    std::vector<float> friction_, inverse_turbulence_, strength_, stem_drag_, viscosity_,
         structure_;  ///< empty: everywhere the same
     struct {
         std::vector<float> depth, momentum_x, momentum_y, from_x, from_y;

@@ -138,6 +138,7 @@ void Solver::set_cover(const GroundValues& ground) {
     pad(ground.inverse_turbulent_friction, inverse_turbulence_, 1);
     pad(ground.cohesion, strength_, 1 / material_.rest_density);
     pad(ground.stem_drag, stem_drag_, 1);
+    pad(ground.laminar_viscosity, viscosity_, 1);
     pad(ground.structure, structure_, 1);
     for (float& s : structure_) s = std::isnan(s) ? 0 : s;
 }

@@ -27,7 +27,7 @@ struct Motion {
 };
 /// Per cell; null: everywhere the same.
 struct Cover {
-    const float *friction, *inverse_turbulence, *strength, *stem_drag;
+    const float *friction, *inverse_turbulence, *strength, *stem_drag, *viscosity;
 };
 
 /// What comes in, per cell; null: nothing anywhere.

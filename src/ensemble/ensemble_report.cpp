@@ -1,5 +1,4 @@
 #include <algorithm>
-#include <cctype>
 #include <cmath>
 #include <string>
 #include <vector>
@@ -18,6 +17,7 @@
 #include "report/page.hpp"
 #include "report/results.hpp"
 #include "report/table.hpp"
+#include "run/words.hpp"
 
 namespace talus::ensemble {
 
@@ -146,11 +146,6 @@ std::string design_text(const EnsembleResult& result) {
                        plan.seed, fmt::join(result.runs->fixed(), ", "));
 }
 
-std::string capital(std::string text) {
-    if (!text.empty()) text[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(text[0])));
-    return text;
-}
-
 /// Classes of intensity, and the area where each is likely or possible.
 Json intensity_of(const EnsembleResult& result) {
     const IntensityGuideline& guideline = *result.guideline;
@@ -235,7 +230,7 @@ MapContent content_of(const EnsembleResult& result) {
     for (std::size_t k = classes.size(); k-- > 0 && !result.reduction.intensity.empty();) {
         const bool top = k + 1 == classes.size();
         content.layers.push_back({intensity_odds_style(classes[k], top), &result.reduction.intensity[k],
-                                  fmt::format("{} intensity{}", capital(classes[k].name), top ? "" : "+"),
+                                  fmt::format("{} intensity{}", run::capitalised(classes[k].name), top ? "" : "+"),
                                   fmt::format("Share of the complete runs with {} intensity{}. Below 1 % nothing is "
                                               "drawn.",
                                               classes[k].name, top ? "" : " or higher"),

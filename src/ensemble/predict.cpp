@@ -21,8 +21,8 @@ bool in_any(const std::vector<Polygon>& polygons, const PlanPoint& p) {
 
 }  // namespace
 
-double predict_front_velocity(const observe::Observation& run, double chainage) {
-    return front_at(run, chainage).front_velocity;
+double predict_debris_speed(const observe::Observation& run, double chainage) {
+    return front_at(run, chainage).particle_speed;
 }
 
 double predict_arrival_time(const observe::Observation& run, double chainage) {
@@ -113,21 +113,21 @@ double superelevation_velocity(const params::SuperelevationSpec& m) {
 std::vector<ObservedValue> observed_values(const scene::Scene& scene) {
     const params::SceneSpec& spec = scene.spec;
     std::vector<ObservedValue> all;
-    const auto add = [&](const char* section, std::size_t i, const char* quantity, std::string name, const char* unit,
-                         double value, double uncertainty) {
+    const auto add = [&](const char* section, std::size_t i, const std::string& quantity, std::string name,
+                         const char* unit, double value, double uncertainty) {
         all.push_back({fmt::format("{}[{}].{}", section, i, quantity), std::move(name), unit, value, uncertainty,
                        ObservedValue::Kind::equal, 0});
     };
     for (std::size_t i = 0; i < spec.observations.size(); ++i) {
         const params::ObservationSpec& o = spec.observations[i];
-        add("observation", i, "front_velocity_mps", fmt::format("Front velocity at {:.6g} m", o.chainage), "m/s",
-            o.front_velocity, o.standard_deviation());
+        add("observation", i, fmt::format("{}_mps", o.key()), fmt::format("{} at {:.6g} m", o.quantity(), o.chainage),
+            "m/s", o.value(), o.standard_deviation());
     }
     for (std::size_t i = 0; i < spec.superelevations.size(); ++i) {
         const params::SuperelevationSpec& o = spec.superelevations[i];
         const double velocity = superelevation_velocity(o);
-        add("superelevation", i, "front_velocity_mps", fmt::format("Velocity in the bend at {:.6g} m", o.chainage),
-            "m/s", velocity, o.uncertainty.value_or(superelevation_share * velocity));
+        add("superelevation", i, "debris_speed_mps", fmt::format("Speed in the bend at {:.6g} m", o.chainage), "m/s",
+            velocity, o.uncertainty.value_or(superelevation_share * velocity));
     }
     for (std::size_t i = 0; i < spec.arrivals.size(); ++i) {
         const params::ArrivalSpec& o = spec.arrivals[i];
@@ -176,8 +176,8 @@ std::vector<ObservedValue> observed_values(const scene::Scene& scene) {
 std::vector<double> predicted_values(const scene::Scene& scene, const observe::Observation& run) {
     const params::SceneSpec& spec = scene.spec;
     std::vector<double> all;
-    for (const auto& o : spec.observations) all.push_back(predict_front_velocity(run, o.chainage));
-    for (const auto& o : spec.superelevations) all.push_back(predict_front_velocity(run, o.chainage));
+    for (const auto& o : spec.observations) all.push_back(computed_for(o, run));
+    for (const auto& o : spec.superelevations) all.push_back(predict_debris_speed(run, o.chainage));
     for (const auto& o : spec.arrivals) all.push_back(predict_arrival_time(run, o.chainage));
     for (const auto& o : spec.run_ups) all.push_back(predict_run_up(run, scene.terrain, {o.x, o.y}));
     for (const auto& o : spec.deposit_depths) all.push_back(predict_deposit_depth(run, {o.x, o.y}));

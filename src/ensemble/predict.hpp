@@ -14,8 +14,8 @@
 /// because debris did not reach the place.
 namespace talus::ensemble {
 
-/// m/s, at which the front first reached a chainage.
-[[nodiscard]] double predict_front_velocity(const observe::Observation& run, double chainage);
+/// m/s, mean speed of the debris at the front as it reached a chainage: what tilts the surface of a flow in a bend.
+[[nodiscard]] double predict_debris_speed(const observe::Observation& run, double chainage);
 
 /// s, at which it did.
 [[nodiscard]] double predict_arrival_time(const observe::Observation& run, double chainage);

@@ -8,6 +8,7 @@
 
 #include "core/geometry.hpp"
 #include "core/grid.hpp"
+#include "params/spec.hpp"
 #include "terrain/flow_path.hpp"
 #include "terrain/gauge.hpp"
 #include "terrain/terrain.hpp"
@@ -232,5 +233,10 @@ struct Observation {
 
 /// The front at a chainage, interpolated between samples; NaN where debris never came.
 [[nodiscard]] FrontSample front_at(const Observation& observation, double chainage);
+/// What a run has in place of a field observation, m/s; NaN: not reached.
+[[nodiscard]] inline double computed_for(const params::ObservationSpec& observed, const Observation& run) {
+    const FrontSample front = front_at(run, observed.chainage);
+    return observed.debris_speed ? front.particle_speed : front.front_velocity;
+}
 
 }  // namespace talus::observe

@@ -18,6 +18,15 @@ void declare_resistance(Declaration<MaterialSpec>& s) {
         "xi is the same at every thickness",
         "Thickness of the flow at which xi, here and in zones, is as given. It then grows with the cube root "
         "of the thickness: Manning's law, with n = thickness^(1/6) / sqrt(xi).");
+    s.optional_key(
+         "laminar_viscosity_m2ps", "m2/s", &MaterialSpec::laminar_viscosity, between(0, 1e6), "none",
+         "Laminar drag: flow of thickness h is slowed by 3 nu v / h2 over its whole depth, beside Coulomb and "
+         "turbulent friction. nu is the kinematic viscosity, dynamic viscosity over density: the viscous term "
+         "of FLO-2D and HEC-RAS with K = 24.")
+        .assumes("Laminar drag, kinematic viscosity")
+        .live_as();
+    s.optional_key("laminar_viscosity_Pas", "Pa s", &MaterialSpec::laminar_dynamic_viscosity, between(0, 1e9),
+                   "laminar_viscosity_m2ps", "The same as dynamic viscosity, in place of laminar_viscosity_m2ps.");
     s.key(
          "cohesion_Pa", "Pa", &MaterialSpec::cohesion, between(0, 1e7),
          "Shear strength that needs no pressure, on the ground and inside: the yield stress of a mud where friction is "
@@ -85,6 +94,17 @@ Section declare_material() {
                          fmt::format(" = {} is refused; it must be at least the internal friction of slow shear, {}",
                                      *material.inertial_friction_coefficient, slow)};
     });
+    s.rule([](const MaterialSpec& material, const SceneSpec&, double) -> std::optional<Violation> {
+        if (!material.laminar_viscosity || !material.laminar_dynamic_viscosity) return {};
+        return Violation{"laminar_viscosity_Pas", ": is given beside laminar_viscosity_m2ps; leave one of them out"};
+    });
+    s.rule([](const MaterialSpec& material, const SceneSpec&, double) -> std::optional<Violation> {
+        if (!material.viscosity_on_ground || !(laminar_viscosity_of(material) > 0)) return {};
+        return Violation{
+            "viscosity_on_ground",
+            " = true is refused beside laminar drag, which is the same viscosity over the whole depth; leave "
+            "one of them out"};
+    });
     return s.take();
 }
 
@@ -123,6 +143,14 @@ Section declare_zone() {
                   .first = 500,
                   .tick = "Turbulent friction",
                   .tick_help = "A separate Voellmy turbulent friction; unticked: as in [material]"});
+    s.optional_key("laminar_viscosity_m2ps", "m2/s", &ZoneSpec::laminar_viscosity, between(0, 1e6), "as in [material]",
+                   "Kinematic viscosity of laminar drag on this ground.")
+        .live_in({.label = "Viscosity",
+                  .slider_low = 0,
+                  .slider_high = 0.2,
+                  .first = 0.04,
+                  .tick = "Laminar drag",
+                  .tick_help = "A separate viscosity of laminar drag; unticked: as in [material]"});
     s.optional_key("cohesion_Pa", "Pa", &ZoneSpec::cohesion, between(0, 1e7), "as in [material]",
                    "Shear strength without pressure between debris and this ground.")
         .live_in({.label = "Shear strength",
@@ -151,14 +179,21 @@ Section declare_zone() {
         return Violation{"raster_value",
                          ": is given, but raster_holds says that the cells hold a coefficient; leave one of them out"};
     });
+    s.rule([](const ZoneSpec& zone, const SceneSpec& spec, double) -> std::optional<Violation> {
+        if (!spec.material.viscosity_on_ground || !(zone.laminar_viscosity.value_or(0) > 0)) return {};
+        return Violation{"laminar_viscosity_m2ps",
+                         fmt::format(" = {} is refused beside material.viscosity_on_ground = true, which is the same "
+                                     "viscosity; leave one of them out",
+                                     *zone.laminar_viscosity)};
+    });
     s.rule([](const ZoneSpec& zone, const SceneSpec&, double) -> std::optional<Violation> {
-        if (zone.friction_coefficient || zone.turbulent_friction || zone.cohesion || zone.stem_density > 0 ||
-            zone.raster_holds != ZoneRaster::zone_number) {
+        if (zone.friction_coefficient || zone.turbulent_friction || zone.laminar_viscosity || zone.cohesion ||
+            zone.stem_density > 0 || zone.raster_holds != ZoneRaster::zone_number) {
             return {};
         }
         return Violation{"friction_coefficient",
-                         ": the zone says nothing; give friction_coefficient, turbulent_friction_mps2, cohesion_Pa, "
-                         "stem_density_pm2 or raster_holds"};
+                         ": the zone says nothing; give friction_coefficient, turbulent_friction_mps2, "
+                         "laminar_viscosity_m2ps, cohesion_Pa, stem_density_pm2 or raster_holds"};
     });
     return s.take();
 }

@@ -27,24 +27,27 @@ void add_place(Declaration<Struct>& s) {
 }
 
 Section declare_observation() {
-    Declaration<ObservationSpec> s(
-        "observation", "A front velocity measured in the field, drawn next to the computed one; any number.",
-        &SceneSpec::observations);
+    Declaration<ObservationSpec> s("observation",
+                                   "A velocity measured in the field, drawn next to the computed one; any number.",
+                                   &SceneSpec::observations);
     add_name(s);
     add_chainage(s);
-    s.key("front_velocity_mps", "m/s", &ObservationSpec::front_velocity, between(0.001, 1000),
-          "Velocity at which debris first reached this chainage.")
-        .required = true;
+    s.optional_key("front_velocity_mps", "m/s", &ObservationSpec::front_velocity, between(0.001, 1000),
+                   "debris_speed_mps is given", "Velocity of the front here, as arrivals along the path give it.");
+    s.optional_key("debris_speed_mps", "m/s", &ObservationSpec::debris_speed, between(0.001, 1000),
+                   "front_velocity_mps is given",
+                   "Speed of the debris as it came through here, as superelevation marks or run-up give it.");
+    s.exactly_one_of({"front_velocity_mps", "debris_speed_mps"});
     add_source(s);
-    s.optional_key("uncertainty_mps", "m/s", &ObservationSpec::uncertainty, between(0.001, 1e6),
-                   "a fifth of the velocity", "Standard deviation of the velocity.");
+    s.optional_key("uncertainty_mps", "m/s", &ObservationSpec::uncertainty, between(0.001, 1e6), "a fifth of the value",
+                   "Standard deviation of the value.");
     return s.take();
 }
 
 Section declare_superelevation() {
     Declaration<SuperelevationSpec> s("superelevation",
-                                      "Marks on both sides of a bend: velocity = sqrt(9.81 x bend radius x level "
-                                      "difference / (correction factor x width)).",
+                                      "Marks on both sides of a bend: speed of the debris = sqrt(9.81 x bend radius x "
+                                      "level difference / (correction factor x width)).",
                                       &SceneSpec::superelevations);
     add_name(s);
     add_chainage(s);

@@ -162,6 +162,8 @@ struct MaterialSpec {
     std::optional<double> turbulent_friction;             ///< xi, m/s2; absent: none
     std::optional<double> turbulent_friction_thickness;   ///< m, of flow with that xi; absent: the same at any
                                                           ///< thickness
+    std::optional<double> laminar_viscosity;              ///< kinematic, m2/s, of laminar drag; absent: none
+    std::optional<double> laminar_dynamic_viscosity;      ///< Pa s, in place of `laminar_viscosity`
     double cohesion = 0;                                  ///< Pa, shear strength without pressure
     double pore_pressure_ratio = 0;                       ///< r_u, at the start of the debris
     std::optional<double> pore_pressure_decay_time;       ///< s; absent: constant
@@ -170,6 +172,11 @@ struct MaterialSpec {
     double grain_diameter = 0.01;    ///< m
     double grain_density = 2650;     ///< kg/m3
 };
+
+/// Kinematic viscosity of laminar drag, m2/s; 0: none.
+[[nodiscard]] inline double laminar_viscosity_of(const MaterialSpec& material) {
+    return material.laminar_viscosity.value_or(material.laminar_dynamic_viscosity.value_or(0) / material.rest_density);
+}
 
 /// What the cells of a zone's raster hold.
 enum class ZoneRaster {
@@ -187,6 +194,7 @@ struct ZoneSpec {
     ZoneRaster raster_holds = ZoneRaster::zone_number;
     std::optional<double> raster_value;
     std::optional<double> friction_coefficient, turbulent_friction, cohesion;  ///< absent: as elsewhere; 1, m/s2, Pa
+    std::optional<double> laminar_viscosity;                                   ///< absent: as elsewhere; m2/s
     double stem_density = 0;                                                   ///< per m2; 0: no stems
     double stem_diameter = 0.3;                                                ///< m
     double stem_drag_coefficient = 1;
@@ -294,16 +302,22 @@ struct ZoomSpec {
     [[nodiscard]] bool wanted() const { return !structure.empty() || !polygon.empty() || !polygon_file.empty(); }
 };
 
-/// `[[observation]]`: a front velocity measured in the field.
+/// `[[observation]]`: a velocity measured in the field.
 struct ObservationSpec {
     std::string name;
-    double chainage = 0;        ///< m along the flow path
-    double front_velocity = 0;  ///< m/s
+    double chainage = 0;                                 ///< m along the flow path
+    std::optional<double> front_velocity, debris_speed;  ///< m/s; one of them
     std::string source;
-    std::optional<double> uncertainty = {};  ///< m/s, one standard deviation; absent: a fifth of the velocity
+    std::optional<double> uncertainty = {};  ///< m/s, one standard deviation; absent: a fifth of the value
 
     /// m/s
-    [[nodiscard]] double standard_deviation() const { return uncertainty.value_or(front_velocity / 5); }
+    [[nodiscard]] double value() const { return debris_speed ? *debris_speed : front_velocity.value_or(0); }
+    /// m/s
+    [[nodiscard]] double standard_deviation() const { return uncertainty.value_or(value() / 5); }
+    /// "Front velocity" or "Debris speed".
+    [[nodiscard]] const char* quantity() const { return debris_speed ? "Debris speed" : "Front velocity"; }
+    /// The same as part of a key.
+    [[nodiscard]] const char* key() const { return debris_speed ? "debris_speed" : "front_velocity"; }
 };
 
 /// `[[superelevation]]`: marks on both sides of a bend, from which the velocity follows.

@@ -134,7 +134,7 @@ void draw_observations(Svg& svg, const scene::Scene& scene, const MapFrame& fram
         const double nx = -(after.y - before.y) / run, ny = -(after.x - before.x) / run;  // to the left, downstream
         svg.path("observation", diamond(frame.x(p.x), frame.y(p.y)));
         svg.text("observation-label", frame.x(p.x) + 13 * nx, frame.y(p.y) + 16 * ny + 4,
-                 fmt::format("{} m: {} m/s", fixed(o.chainage, 0), plain(o.front_velocity)), nx >= 0 ? "start" : "end");
+                 fmt::format("{} m: {} m/s", fixed(o.chainage, 0), plain(o.value())), nx >= 0 ? "start" : "end");
     }
 }
 

@@ -13,6 +13,7 @@
 #include "observe/peaks.hpp"
 #include "report/hazard_map.hpp"
 #include "report/number_text.hpp"
+#include "run/words.hpp"
 #include "sim/compression.hpp"
 
 namespace talus::report {
@@ -93,11 +94,14 @@ Json status(const run::RunResult& result, const run::RunVerdict& verdict) {
 }
 
 Json beyond_limits(const run::RunVerdict& verdict) {
-    return verdict.within_limits() ? Json() : Json(verdict.text());
+    return verdict.within_limits() ? Json() : Json(run::uncapitalised(verdict.text()));
 }
 
 Json named_verdict(std::string_view name, const Json& verdict) {
-    Json shown = {{"name", name}, {"within_limits", verdict["within_limits"]}, {"checks", Json::array()}};
+    const std::string limits = verdict["within_limits"].get<bool>() ? "within limits" : "beyond limits";
+    Json shown = {{"heading", name.empty() ? run::capitalised(limits) : fmt::format("{}: {}", name, limits)},
+                  {"within_limits", verdict["within_limits"]},
+                  {"checks", Json::array()}};
     for (const Json& check : verdict["checks"]) {
         // The depth-averaged model has no such thing.
         if (check["key"] == "compression" && check["state"] == "not_measured") continue;
@@ -301,22 +305,26 @@ Json observations(const scene::Scene& scene, const run::RunResult& result) {
     Json rows =
         table({{"observation", "Observation", ""},
                {"chainage_m", "Chainage", "m", "f0"},
+               {"quantity", "Quantity", ""},
                {"observed_mps", "Observed", "m/s", "f1"},
-               {"computed_mps", "Computed front", "m/s", "f1", "", "not reached", true},
+               {"computed_mps", "Computed", "m/s", "f1", "", "not reached", true},
                {"difference_percent", "Difference", "%", "d0"},
+               {"front_velocity_mps", "Front velocity", "m/s", "f1"},
                {"particle_speed_mps", result.depth_averaged() ? "Speed of the flow" : "Particle speed", "m/s", "f1"},
                {"arrival_s", "Arrival", "s", "f1"},
                {"source", "Source", "", "", "source"}});
     for (const params::ObservationSpec& observed : scene.spec.observations) {
         const observe::FrontSample computed = front_at(result.observation, observed.chainage);
-        Json velocity = number_or_null<Json>(computed.front_velocity);
+        const double value = computed_for(observed, result.observation);
+        Json velocity = number_or_null<Json>(value);
         if (velocity.is_null() && outside_zoom(scene, result, observed.chainage)) velocity = "outside the zoom";
         rows["rows"].push_back({{"observation", observed.name},
                                 {"chainage_m", observed.chainage},
-                                {"observed_mps", observed.front_velocity},
+                                {"quantity", observed.quantity()},
+                                {"observed_mps", observed.value()},
                                 {"computed_mps", std::move(velocity)},
-                                {"difference_percent",
-                                 number_or_null<Json>(100 * (computed.front_velocity / observed.front_velocity - 1))},
+                                {"difference_percent", number_or_null<Json>(100 * (value / observed.value() - 1))},
+                                {"front_velocity_mps", number_or_null<Json>(computed.front_velocity)},
                                 {"particle_speed_mps", number_or_null<Json>(computed.particle_speed)},
                                 {"arrival_s", number_or_null<Json>(computed.arrival_time)},
                                 {"source", observed.source}});

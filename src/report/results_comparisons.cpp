@@ -1,5 +1,4 @@
 #include <algorithm>
-#include <cctype>
 #include <cmath>
 #include <vector>
 
@@ -8,6 +7,7 @@
 #include "core/number_or_null.hpp"
 #include "report/number_text.hpp"
 #include "report/results.hpp"
+#include "run/words.hpp"
 
 namespace talus::report {
 namespace {
@@ -21,14 +21,9 @@ std::string variant_style(std::size_t i) {
     return fmt::format("series v{}{}", i % colours, i >= colours ? " dashed" : "");
 }
 
-std::string capitalised(std::string text) {
-    text[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(text[0])));
-    return text;
-}
-
 /// "Run-out" is not broken at its hyphen.
 std::string heading(const run::Quantity& quantity) {
-    std::string name = capitalised(quantity.name);
+    std::string name = run::capitalised(quantity.name);
     if (const std::size_t hyphen = name.find('-'); hyphen != std::string::npos) name.replace(hyphen, 1, "\u2011");
     return name;
 }
@@ -98,7 +93,7 @@ Json rows_of_quantities(const run::Comparison& comparison, const run::RunResult&
     std::vector<Column> columns = {{"quantity", "Quantity", ""}, {"base", base_name, "", "s3", "", "not measured"}};
     const auto key_of = [](std::size_t i) { return fmt::format("run_{}", i); };
     for (std::size_t i = 0; i < comparison.rows.size(); ++i)
-        columns.push_back({key_of(i), capitalised(comparison.rows[i].run.variant.name), "", "s3"});
+        columns.push_back({key_of(i), run::capitalised(comparison.rows[i].run.variant.name), "", "s3"});
     columns.push_back({"limit", "Limit", "%", "s3"});
     Json all = table(columns, "comparison");
     const auto add = [&](Json row, const auto& cell) {
@@ -110,7 +105,7 @@ Json rows_of_quantities(const run::Comparison& comparison, const run::RunResult&
     };
     for (std::size_t k = 0; k < comparison.quantities.size(); ++k) {
         const run::Quantity& q = comparison.quantities[k];
-        Json row = {{"quantity", capitalised(q.name) + (q.unit.empty() ? "" : ", " + q.unit)},
+        Json row = {{"quantity", run::capitalised(q.name) + (q.unit.empty() ? "" : ", " + q.unit)},
                     {"base", number_or_null<Json>(q.base)}};
         row["limit"] = q.limit_percent > 0 ? Json(q.limit_percent) : Json("the same");
         add(std::move(row), [&](const run::Comparison::Row& run) { return change_cell(q, run.changes[k], true); });
@@ -218,7 +213,7 @@ Json comparison(const run::Comparison& comparison, const scene::Scene& scene, co
             {"convergence", judged},
             {"converged", converged},
             {"not_known", judged && comparison.converged() == run::Answer::unknown},
-            {"verdict", capitalised(comparison.verdict_text())},
+            {"verdict", run::capitalised(comparison.verdict_text())},
             {"counting_force_percent", 100 * run::counting_force_share},
             {"table", judged ? rows_of_quantities(comparison, base) : rows_of_runs(comparison, base)},
             {"not_measured", std::move(not_measured)},

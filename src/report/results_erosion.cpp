@@ -65,6 +65,7 @@ Json zones(const scene::Scene& scene) {
                               : Json{{"friction_coefficient", material.friction_coefficient},
                                      {"turbulent_friction_mps2",
                                       material.turbulent_friction ? Json(*material.turbulent_friction) : Json()},
+                                     {"laminar_viscosity_m2ps", params::laminar_viscosity_of(material)},
                                      {"cohesion_Pa", material.cohesion}}},
             {"bed", !scene.spec.beds.empty()}};
 }

@@ -129,19 +129,19 @@ void draw_profile(Plot& plot, const scene::Scene& scene, const run::RunResult& r
 void include_observations(const scene::Scene& scene, ValueRange& chainages, ValueRange& speeds) {
     for (const params::ObservationSpec& o : scene.spec.observations) {
         chainages.include(o.chainage);
-        speeds.include(o.front_velocity + o.standard_deviation());
+        speeds.include(o.value() + o.standard_deviation());
     }
 }
 
 void mark_observations(const scene::Scene& scene, Plot& velocity) {
     const double cap = 4 * (velocity.x_range.high - velocity.x_range.low) / velocity.width;  // half of it, 4 SVG units
     for (const params::ObservationSpec& o : scene.spec.observations) {
-        const double low = std::max(0.0, o.front_velocity - o.standard_deviation());
-        const double high = o.front_velocity + o.standard_deviation();
+        const double low = std::max(0.0, o.value() - o.standard_deviation());
+        const double high = o.value() + o.standard_deviation();
         const std::vector<double> middle(2, o.chainage), ends{o.chainage - cap, o.chainage + cap};
         velocity.line(middle, std::vector<double>{low, high}, "whisker");
         for (const double end : {low, high}) velocity.line(ends, std::vector<double>(2, end), "whisker");
-        velocity.mark(o.chainage, o.front_velocity, "observation");
+        velocity.mark(o.chainage, o.value(), "observation");
     }
 }
 
@@ -170,7 +170,8 @@ Json front_chart(const scene::Scene& scene, const run::RunResult& result) {
     for (const params::ObservationSpec& o : scene.spec.observations) {
         velocity.vertical(o.chainage, "observation-line");
         // Labels stand above the curves; one that would overlap its neighbour moves down a row.
-        const std::string value = fmt::format("observed {} m/s at {} m", plain(o.front_velocity), plain(o.chainage));
+        const std::string value = fmt::format("{}observed {} m/s at {} m", o.debris_speed ? "debris " : "",
+                                              plain(o.value()), plain(o.chainage));
         const std::string name = shortened(o.name, 40), source = shortened(o.source, 40);
         const double length = 7.3 * static_cast<double>(std::max({value.size(), name.size(), source.size()}));
         const bool leftward = velocity.px(o.chainage) + length > left + width;

@@ -54,6 +54,10 @@ void add_resistances(Json& rows, const scene::Scene& scene) {
                                    : "";
         add("Turbulent friction", fmt::format("ξ = {} m/s²{}", plain(*material.turbulent_friction), at));
     }
+    if (const double nu = params::laminar_viscosity_of(material); nu > 0) {
+        add("Laminar drag",
+            fmt::format("ν = {} m²/s, {} Pa s", significant(nu, 3), significant(nu * material.rest_density, 3)));
+    }
     if (material.cohesion > 0) add("Cohesion", fmt::format("{} Pa", plain(material.cohesion)));
     for (const params::ReleaseSpec& release : scene.spec.releases) {
         const double ratio = release.pore_pressure_ratio.value_or(material.pore_pressure_ratio);
@@ -73,6 +77,7 @@ void add_resistances(Json& rows, const scene::Scene& scene) {
         const auto say = [&](const std::string& text) { says += (says.empty() ? "" : ", ") + text; };
         if (zone.friction_coefficient) say(fmt::format("f = {}", plain(*zone.friction_coefficient)));
         if (zone.turbulent_friction) say(fmt::format("ξ = {} m/s²", plain(*zone.turbulent_friction)));
+        if (zone.laminar_viscosity) say(fmt::format("ν = {} m²/s", plain(*zone.laminar_viscosity)));
         if (zone.cohesion) say(fmt::format("cohesion {} Pa", plain(*zone.cohesion)));
         if (zone.raster_holds != params::ZoneRaster::zone_number) say("coefficients of its raster");
         if (zone.stem_density > 0) {
@@ -164,12 +169,16 @@ Json parameter_table(const scene::Scene& scene, bool set) {
         // Printed in full elsewhere: at the top, under Assumptions, beside the computed front velocities.
         if (section.name == "scene" || section.name == "report" || section.name == "observation") return;
         if (is_set(scene, section, index, parameter, value) != set) return;
-        const bool unused = !uses_particles(scene) && scene::for_particles_only(key_path(section, index, parameter));
+        const std::string key = key_path(section, index, parameter);
+        const bool unused =
+            uses_particles(scene) ? !scene.zoom && scene::for_depth_averaged_only(key) : scene::for_particles_only(key);
         if (unused && !set) return;
         Json row = {{"key", parameter.key},
                     {"value", shown(parameter, value)},
                     {"unit", parameter.unit},
-                    {"help", unused ? "Not used by the depth-averaged model." : parameter.help}};
+                    {"help", !unused                 ? parameter.help
+                             : uses_particles(scene) ? "Used by the depth-averaged model only."
+                                                     : "Not used by the depth-averaged model."}};
         if (const std::string heading = heading_of(section, index); heading != open) {
             row["heading"] = open = heading;
             row["heading_note"] = index == 0 ? section.help : "";
@@ -253,11 +262,15 @@ Json method(const scene::Scene& scene) {
     return {{"pairwise_internal_friction", pairwise},
             {"turbulent_friction",
              turbulent ? Json{{"thickness_m", given(material.turbulent_friction_thickness)}} : Json()},
+            {"laminar_drag", params::laminar_viscosity_of(material) > 0 || any_zone([](const params::ZoneSpec& zone) {
+                                 return zone.laminar_viscosity.value_or(0) > 0;
+                             })},
             {"cohesion", material.cohesion > 0},
             {"pore_pressure",
              has_pore_pressure(scene.spec) ? Json{{"decay_time_s", given(material.pore_pressure_decay_time)}} : Json()},
             {"inertial_friction", material.inertial_friction_coefficient.has_value()},
             {"viscosity_on_ground", static_cast<bool>(material.viscosity_on_ground)},
+            {"flight", scene.spec.solver.flight},
             {"stems", any_zone([](const params::ZoneSpec& zone) { return zone.stem_density > 0; })},
             {"nets", std::any_of(all_barriers.begin(), all_barriers.end(),
                                  [](const params::BarrierSpec& b) { return b.passing_share.has_value(); })},

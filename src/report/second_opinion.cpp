@@ -28,9 +28,8 @@ std::vector<Quantity> quantities(const BothModels& models, const run::SecondOpin
     };
     for (const params::ObservationSpec& observed : models.scene.spec.observations) {
         const std::string at = fmt::format(" at {} m", plain(observed.chainage));
-        add("Front velocity" + at, "m/s", "f1",
-            [&](const auto& o) { return front_at(o, observed.chainage).front_velocity; });
-        all.back().observed = observed.front_velocity;
+        add(observed.quantity() + at, "m/s", "f1", [&](const auto& o) { return computed_for(observed, o); });
+        all.back().observed = observed.value();
         add("Front arrival" + at, "s", "f1",
             [&](const auto& o) { return front_at(o, observed.chainage).arrival_time; });
     }

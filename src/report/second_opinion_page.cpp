@@ -142,6 +142,7 @@ Result<std::string> second_opinion_report(const BothModels& models, const run::S
     page["report_name"] = "two models compared";
     page["masthead"] = "Landslide run-out, two models compared";
     page["maps"] = std::move(maps);
+    page["flight"] = models.grid_scene.spec.solver.flight;
     page["verdicts"] = Json::array({named_verdict("Particles", results["verdict"]["particles"]),
                                     named_verdict("Depth-averaged", results["verdict"]["depth_averaged"])});
     return render(report_files::second_opinion_html, page);

@@ -155,14 +155,12 @@ Sentence deposit(const BothModels& models) {
 std::vector<Sentence> front_velocities(const BothModels& models) {
     std::vector<Sentence> all;
     for (const params::ObservationSpec& observed : models.scene.spec.observations) {
-        const auto at = [&](const run::RunResult& run) {
-            return front_at(run.observation, observed.chainage).front_velocity;
-        };
+        const auto at = [&](const run::RunResult& run) { return computed_for(observed, run.observation); };
         const double p = at(models.particles), d = at(models.depth_averaged);
         if (std::isnan(p) && std::isnan(d)) continue;
-        all.push_back({size_of(p, d),
-                       fmt::format("Front velocity at chainage {}\u00a0m: {}; observed {}.", plain(observed.chainage),
-                                   pair_text(p, d, "f1", "m/s"), with_unit(observed.front_velocity, "f1", "m/s"))});
+        all.push_back({size_of(p, d), fmt::format("{} at chainage {}\u00a0m: {}; observed {}.", observed.quantity(),
+                                                  plain(observed.chainage), pair_text(p, d, "f1", "m/s"),
+                                                  with_unit(observed.value(), "f1", "m/s"))});
     }
     return all;
 }

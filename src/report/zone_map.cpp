@@ -69,6 +69,7 @@ std::vector<std::string> values_of(const params::ZoneSpec& zone) {
     if (zone.raster_holds == params::ZoneRaster::turbulent_friction) lines.emplace_back("ξ as its raster says");
     if (zone.friction_coefficient) lines.push_back(fmt::format("friction {}", plain(*zone.friction_coefficient)));
     if (zone.turbulent_friction) lines.push_back(fmt::format("ξ {} m/s²", plain(*zone.turbulent_friction)));
+    if (zone.laminar_viscosity) lines.push_back(fmt::format("ν {} m²/s", plain(*zone.laminar_viscosity)));
     if (zone.cohesion) lines.push_back(fmt::format("cohesion {} Pa", plain(*zone.cohesion)));
     if (zone.stem_density > 0) {
         lines.push_back(fmt::format("{} stems/m²", plain(zone.stem_density)));

@@ -31,15 +31,16 @@ double first_building_hit(const observe::Observation& observation) {
     return first;
 }
 
-Measure front_velocity(const scene::Scene& scene, double chainage) {
+Measure at_observation(const scene::Scene& scene, const params::ObservationSpec& observed) {
     Measure m;
-    m.quantity = {.key = fmt::format("front_velocity_at_{:g}_m", chainage),
+    m.quantity = {.key = fmt::format("{}_at_{:g}_m", observed.key(), observed.chainage),
                   .suffix = "mps",
-                  .name = fmt::format("front velocity at {:g} m", chainage),
+                  .name = fmt::format("{} at {:g} m", observed.debris_speed ? "debris speed" : "front velocity",
+                                      observed.chainage),
                   .unit = "m/s",
                   .not_measured = scene.flow_path.empty() ? "the scene has no flow path"
                                                           : "the front did not get there, or jumped along the path"};
-    m.value = [chainage](const observe::Observation& o) { return front_at(o, chainage).front_velocity; };
+    m.value = [observed](const observe::Observation& o) { return computed_for(observed, o); };
     return m;
 }
 
@@ -178,7 +179,7 @@ std::vector<Measure> measures(ComparisonKind kind, const scene::Scene& scene, co
                               const observe::Peaks& peaks) {
     std::vector<Measure> all;
     for (const params::ObservationSpec& observed : scene.spec.observations) {
-        Measure m = front_velocity(scene, observed.chainage);
+        Measure m = at_observation(scene, observed);
         const bool twice =
             std::any_of(all.begin(), all.end(), [&](const Measure& a) { return a.quantity.key == m.quantity.key; });
         if (!twice) all.push_back(std::move(m));

@@ -90,7 +90,8 @@ GridGround grid_ground(const scene::Scene& scene) {
     if (!scene.cover.empty()) {
         for (std::vector<float>* values :
              {&ground.values.friction_coefficient, &ground.values.inverse_turbulent_friction, &ground.values.cohesion,
-              &ground.values.stem_drag}) {
+              &ground.values.stem_drag, &ground.values.laminar_viscosity}) {
+            if (values == &ground.values.laminar_viscosity && !scene.cover.has_viscosities()) continue;
             values->assign(g.size(), std::numeric_limits<float>::quiet_NaN());
         }
     }
@@ -108,6 +109,8 @@ GridGround grid_ground(const scene::Scene& scene) {
             ground.values.inverse_turbulent_friction[k] = cover.y;
             ground.values.cohesion[k] = cover.z;
             ground.values.stem_drag[k] = cover.w;
+            if (scene.cover.has_viscosities())
+                ground.values.laminar_viscosity[k] = scene.cover.viscosity_at(at.x, at.y);
         }
     }
     for (const terrain::Building& building : scene.buildings) {

@@ -5,6 +5,8 @@
 
 #include <fmt/format.h>
 
+#include "run/words.hpp"
+
 namespace talus::run {
 namespace {
 
@@ -33,8 +35,8 @@ StillMoving still_moving(const std::vector<observe::TimeSample>& timeseries, con
 
 std::string with_what_moved(std::string reason, const StillMoving& moving) {
     if (!(moving.volume > 0)) return reason;
-    reason += fmt::format(" with {:.3g} m3 still moving ({:.3g} % of the debris), at up to {:.2g} m/s", moving.volume,
-                          100 * moving.share, moving.greatest_speed);
+    reason += fmt::format(" with {} m3 still moving ({} % of the debris), at up to {} m/s", rounded(moving.volume, 3),
+                          rounded(100 * moving.share, 3), rounded(moving.greatest_speed, 2));
     if (!std::isnan(moving.slow_since)) {
         reason += fmt::format("; its kinetic energy was below {:.3g} % of its peak from {:.3g} s on", 100 * slow_share,
                               moving.slow_since);

@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include "core/number_or_null.hpp"
+#include "run/words.hpp"
 #include "sim/compression.hpp"
 
 namespace talus::run {
@@ -39,20 +40,20 @@ Check resolution(const RunResult& result) {
     const observe::FlowThickness& flow = result.observation.thickness;
     if (result.depth_averaged()) {
         check.text = fmt::format(
-            "not measured with the depth-averaged model (cells of {:.4g} m); compare with half of "
+            "Not measured with the depth-averaged model (cells of {:.4g} m); compare with half of "
             "solver.grid_cell_m",
             result.grid_cell);
         return check;
     }
     if (!flow.known() || !(result.particle_spacing > 0)) {
-        check.text = "not measured: debris reached no map cell";
+        check.text = "Not measured: debris reached no map cell";
         return check;
     }
     check.value = flow.median / result.particle_spacing;
     check.limit = observe::FlowThickness::min_layers;
     check.state = compare_with_limit(check.value >= check.limit);
     check.text =
-        fmt::format("the flow is {:.1f} particles thick in the median of its trail{}", check.value,
+        fmt::format("The flow is {:.1f} particles thick in the median of its trail{}", check.value,
                     check.state == CheckState::within
                         ? ""
                         : fmt::format(", fewer than {:.0f}: depths, speeds and forces mean little", check.limit));
@@ -62,28 +63,29 @@ Check resolution(const RunResult& result) {
 Check compression(const RunResult& result) {
     Check check = new_check(kinds[1]);
     if (result.depth_averaged()) {
-        check.text = "not measured: the depth-averaged model keeps the volume of its debris";
+        check.text = "Not measured: the depth-averaged model keeps the volume of its debris";
         return check;
     }
     const observe::Compression& c = result.observation.compression;
     check.value = c.time_share_above;
     check.limit = observe::Compression::time_share_limit;
     check.state = compare_with_limit(c.within_limits());
-    check.text = check.state == CheckState::within
-                     ? fmt::format("debris compressed by at most {:.2g} % on average", 100 * c.worst_mean)
-                     : fmt::format("debris too compressed during {:.2g} % of the simulated time", 100 * check.value);
+    check.text =
+        check.state == CheckState::within
+            ? fmt::format("Debris compressed by at most {} % on average", rounded(100 * c.worst_mean, 2))
+            : fmt::format("Debris too compressed during {} % of the simulated time", rounded(100 * check.value, 2));
     return check;
 }
 
 std::string speed_text(const observe::Energy& e) {
     if (!(e.share > observe::Energy::share_limit)) {
-        return fmt::format("speeds are at most {:.0f} % of free fall from the crown", 100 * std::sqrt(e.share));
+        return fmt::format("Speeds are at most {:.0f} % of free fall from the crown", 100 * std::sqrt(e.share));
     }
     return fmt::format(
-        "the flow is faster than its fall explains: {:.3g} m/s at ({:.0f}, {:.0f}), where a fall of "
-        "{:.3g} m allows {:.3g} m/s, and so in {} of {} map cells; speeds and pressures there are wrong, "
+        "The flow is faster than its fall explains: {} m/s at ({:.0f}, {:.0f}), where a fall of "
+        "{} m allows {} m/s, and so in {} of {} map cells; speeds and pressures there are wrong, "
         "run-out is doubtful",
-        e.speed, e.at.x, e.at.y, e.fall, e.allowed_speed, e.cells_above, e.cells);
+        rounded(e.speed, 3), e.at.x, e.at.y, rounded(e.fall, 3), rounded(e.allowed_speed, 3), e.cells_above, e.cells);
 }
 
 Check energy(const RunResult& result) {
@@ -94,16 +96,16 @@ Check energy(const RunResult& result) {
     const observe::Energy& e = of_event ? result.zoom->energy : own;
     if (!e.known()) {
         check.limit = observe::never;
-        check.text = "not measured: debris reached no map cell";
+        check.text = "Not measured: debris reached no map cell";
         return check;
     }
     check.value = e.share;
     check.state = compare_with_limit(e.within_limits());
-    check.text = of_event ? "in the depth-averaged run that feeds the zoom, " : "";
-    check.text += speed_text(e);
+    check.text =
+        of_event ? "In the depth-averaged run that feeds the zoom, " + uncapitalised(speed_text(e)) : speed_text(e);
     if (e.gained > observe::Energy::gained_limit) {
-        check.text += fmt::format("; the debris has gained {:.2g} % of the energy of its whole fall by t = {:.4g} s",
-                                  100 * e.gained, e.gained_time);
+        check.text += fmt::format("; the debris has gained {} % of the energy of its whole fall by t = {:.4g} s",
+                                  rounded(100 * e.gained, 2), e.gained_time);
     }
     return check;
 }
@@ -111,19 +113,20 @@ Check energy(const RunResult& result) {
 Check still_moving(const RunResult& result) {
     Check check = new_check(kinds[3]);
     if (result.status != RunStatus::complete || result.observation.timeseries.empty()) {
-        check.text = "not known before the run has come to its end";
+        check.text = "Not known before the run has come to its end";
         return check;
     }
     const StillMoving moving = result.still_moving();
     check.limit = still_moving_limit;
     check.value = moving.share;
     check.state = compare_with_limit(check.value <= check.limit);
-    check.text = check.state == CheckState::within
-                     ? fmt::format("{:.2g} % of the debris still moved at the end", 100 * check.value)
-                     : fmt::format(
-                           "{:.2g} % of the debris ({:.3g} m3) still moved at the end, t = {:.4g} s: run-out "
-                           "and deposit are lower bounds",
-                           100 * check.value, moving.volume, result.observation.timeseries.back().time);
+    check.text =
+        check.state == CheckState::within
+            ? fmt::format("{} % of the debris still moved at the end", rounded(100 * check.value, 2))
+            : fmt::format(
+                  "{} % of the debris ({} m3) still moved at the end, t = {:.4g} s: run-out "
+                  "and deposit are lower bounds",
+                  rounded(100 * check.value, 2), rounded(moving.volume, 3), result.observation.timeseries.back().time);
     return check;
 }
 
@@ -133,10 +136,10 @@ Check convergence(const std::vector<Comparison>& comparisons) {
         if (comparison.kind != ComparisonKind::convergence) continue;
         const Answer converged = comparison.converged();
         if (converged != Answer::unknown) check.state = compare_with_limit(converged == Answer::yes);
-        check.text = comparison.verdict_text();
+        check.text = capitalised(comparison.verdict_text());
         return check;
     }
-    check.text = "not tested; talus run --convergence compares with finer numerics";
+    check.text = "Not tested; talus run --convergence compares with finer numerics";
     return check;
 }
 
@@ -175,15 +178,11 @@ bool RunVerdict::within_limits() const {
 
 std::string RunVerdict::text() const {
     std::string names;
-    std::size_t count = 0;
     for (const Check& check : checks) {
         if (check.state != CheckState::beyond) continue;
-        std::string name(check.name);
-        name[0] = static_cast<char>(name[0] - 'A' + 'a');
-        names += (count++ == 0 ? "" : ", ") + name;
+        names += (names.empty() ? "" : ", ") + uncapitalised(std::string(check.name));
     }
-    if (count == 0) return "within limits";
-    return (count == 1 ? "beyond its limit: " : "beyond their limits: ") + names;
+    return names.empty() ? "Within limits" : "Beyond limits: " + names;
 }
 
 std::string RunVerdict::keys() const {
@@ -198,7 +197,8 @@ std::string RunVerdict::keys() const {
 std::vector<std::string> RunVerdict::warnings() const {
     std::vector<std::string> warnings;
     for (const Check& check : checks) {
-        if (check.state == CheckState::beyond) warnings.push_back(fmt::format("{}: {}", check.name, check.text));
+        if (check.state == CheckState::beyond)
+            warnings.push_back(fmt::format("{}: {}", check.name, uncapitalised(check.text)));
     }
     return warnings;
 }
@@ -226,8 +226,8 @@ RunVerdict judge_together(const std::vector<RunVerdict>& verdicts) {
                                [&](const Check& c) { return c.key == check.key && c.state == CheckState::beyond; });
         });
         if (beyond == 0) continue;
-        check.text =
-            fmt::format("beyond its limit in {} of {} runs; in the worst, {}", beyond, verdicts.size(), check.text);
+        check.text = fmt::format("Beyond its limit in {} of {} runs; in the worst, {}", beyond, verdicts.size(),
+                                 uncapitalised(check.text));
     }
     return all;
 }

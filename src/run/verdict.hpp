@@ -33,7 +33,7 @@ struct RunVerdict {
 
     [[nodiscard]] const Check& check(std::string_view key) const;
     [[nodiscard]] bool within_limits() const;
-    /// "within limits", "beyond its limit: energy", "beyond their limits: resolution, energy".
+    /// "Within limits", "Beyond limits: resolution, still moving".
     [[nodiscard]] std::string text() const;
     /// Keys of what is beyond its limit, with a space between them; empty: nothing is.
     [[nodiscard]] std::string keys() const;

@@ -74,6 +74,8 @@ constexpr std::array keys = {
     DepthAveragedKey{"material.viscosity_on_ground", used, ""},
     DepthAveragedKey{"material.turbulent_friction_mps2", used, ""},
     DepthAveragedKey{"material.turbulent_friction_thickness_m", used, ""},
+    DepthAveragedKey{"material.laminar_viscosity_m2ps", used, ""},
+    DepthAveragedKey{"material.laminar_viscosity_Pas", used, ""},
     DepthAveragedKey{"material.cohesion_Pa", used, ""},
     DepthAveragedKey{"material.pore_pressure_ratio", used, ""},
     DepthAveragedKey{"material.pore_pressure_decay_time_s", used, ""},
@@ -91,6 +93,7 @@ constexpr std::array keys = {
     DepthAveragedKey{"zone.raster_value", used, ""},
     DepthAveragedKey{"zone.friction_coefficient", used, ""},
     DepthAveragedKey{"zone.turbulent_friction_mps2", used, ""},
+    DepthAveragedKey{"zone.laminar_viscosity_m2ps", used, ""},
     DepthAveragedKey{"zone.cohesion_Pa", used, ""},
     DepthAveragedKey{"zone.stem_density_pm2", used, ""},
     DepthAveragedKey{"zone.stem_diameter_m", used, ""},
@@ -121,8 +124,8 @@ constexpr std::array keys = {
     DepthAveragedKey{"solver.thread_count", used, ""},
     DepthAveragedKey{"solver.backend", noted, ""},
     DepthAveragedKey{"solver.model", used, ""},
-    DepthAveragedKey{"solver.grid_cell_m", used, ""},
-    DepthAveragedKey{"solver.flight", used, ""},
+    DepthAveragedKey{"solver.grid_cell_m", own, ""},
+    DepthAveragedKey{"solver.flight", own, ""},
     DepthAveragedKey{"outputs.map_cell_m", noted, ""},
     DepthAveragedKey{"outputs.sample_interval_s", used, ""},
     DepthAveragedKey{"outputs.chainage_interval_m", used, ""},
@@ -179,6 +182,11 @@ const DepthAveragedKey* depth_averaged_key(std::string_view key) {
 bool for_particles_only(std::string_view key) {
     const DepthAveragedKey* entry = depth_averaged_key(key);
     return entry != nullptr && entry->use == noted;
+}
+
+bool for_depth_averaged_only(std::string_view key) {
+    const DepthAveragedKey* entry = depth_averaged_key(key);
+    return entry != nullptr && entry->use == own;
 }
 
 }  // namespace talus::scene

@@ -8,6 +8,7 @@ namespace talus::scene {
 
 enum class KeyUse {
     used,     ///< it changes what is computed, measured or said
+    own,      ///< the same, and means nothing to particles; given with them alone, it is named in a note
     noted,    ///< it means something to particles only; given, it is named in a note
     refused,  ///< a scene that gives it is refused
 };
@@ -26,5 +27,7 @@ struct DepthAveragedKey {
 
 /// Whether a key means something to particles only: the depth-averaged model has no use for it.
 [[nodiscard]] bool for_particles_only(std::string_view key);
+/// The other way round.
+[[nodiscard]] bool for_depth_averaged_only(std::string_view key);
 
 }  // namespace talus::scene

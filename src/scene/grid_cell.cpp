@@ -69,15 +69,25 @@ Status refuse_for_depth_averaged(const ParsedScene& parsed, const Scene& scene, 
     return {};
 }
 
+namespace {
+
+/// Keys that the scene gives and that are of this use.
+std::vector<std::string> given_keys(const Scene& scene, KeyUse use) {
+    std::vector<std::string> given;
+    for (const DepthAveragedKey& entry : depth_averaged_keys()) {
+        std::string key(entry.key);
+        if (entry.use == use && scene.given_keys.contains(key)) given.push_back(std::move(key));
+    }
+    return given;
+}
+
+}  // namespace
+
 std::vector<std::string> depth_averaged_notes(const Scene& scene) {
-    std::vector<std::string> unused;
+    std::vector<std::string> unused = given_keys(scene, KeyUse::noted);
     const auto dense = [](const terrain::Inflow& inflow) { return inflow.has_density(); };
     if (std::any_of(scene.inflows.begin(), scene.inflows.end(), dense)) {
         unused.emplace_back("the density of hydrographs");
-    }
-    for (const DepthAveragedKey& entry : depth_averaged_keys()) {
-        const std::string key(entry.key);
-        if (entry.use == KeyUse::noted && scene.given_keys.contains(key)) unused.push_back(key);
     }
     const params::MaterialSpec& material = scene.spec.material;
     if (material.kinematic_viscosity && !material.viscosity_on_ground) {
@@ -89,10 +99,18 @@ std::vector<std::string> depth_averaged_notes(const Scene& scene) {
     }
     notes.push_back(fmt::format(
         "depth-averaged model on cells of {:.4g} m: one velocity over the depth; buildings and barriers are "
-        "whole cells, forces on them are weight and momentum flux of the flow beside them; no friction inside, no "
-        "falls, no splash",
-        grid_cell(scene)));
+        "whole cells, forces on them are weight and momentum flux of the flow beside them; no friction inside, {}no "
+        "splash",
+        grid_cell(scene), scene.spec.solver.flight ? "" : "no falls, "));
     return notes;
+}
+
+void note_unused_by_particles(Scene& scene) {
+    if (scene.zoom) return;
+    const std::vector<std::string> unused = given_keys(scene, KeyUse::own);
+    if (unused.empty()) return;
+    scene.notes.push_back(
+        fmt::format("particles have no use for {}: only the depth-averaged model has", fmt::join(unused, ", ")));
 }
 
 Status check_depth_averaged(const ParsedScene& parsed, Scene& scene) {

@@ -25,6 +25,9 @@ struct Lacking {
 /// What it leaves out of a loaded scene that it can run, in sentences without capital and full stop.
 [[nodiscard]] std::vector<std::string> depth_averaged_notes(const Scene& scene);
 
+/// Notes given keys that mean something to the depth-averaged model only, unless that runs too, for a zoom.
+void note_unused_by_particles(Scene& scene);
+
 /// Refuses what this model does not have, and too many cells. `otherwise`: what can be done but to remove it, "use
 /// solver.model = "particles"".
 [[nodiscard]] Status refuse_for_depth_averaged(const ParsedScene& parsed, const Scene& scene,

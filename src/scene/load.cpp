@@ -177,7 +177,10 @@ Result<Scene> assemble_scene(const ParsedScene& parsed) {
     TALUS_TRY(check_alerts(parsed, scene));
     TALUS_TRY(particles ? check_limits(parsed, scene) : check_depth_averaged(parsed, scene));
     note_implausible_terrain(scene);
-    if (particles) note_coarse_particles(scene);
+    if (particles) {
+        note_coarse_particles(scene);
+        note_unused_by_particles(scene);
+    }
     return Result<Scene>(std::move(scene));
 }
 

@@ -13,6 +13,7 @@ constexpr float as_elsewhere = std::numeric_limits<float>::quiet_NaN();
 void lay(const params::ZoneSpec& spec, float value, terrain::CoverCell& cell) {
     if (spec.friction_coefficient) cell.friction_coefficient = static_cast<float>(*spec.friction_coefficient);
     if (spec.turbulent_friction) cell.inverse_turbulent_friction = static_cast<float>(1 / *spec.turbulent_friction);
+    if (spec.laminar_viscosity) cell.laminar_viscosity = static_cast<float>(*spec.laminar_viscosity);
     if (spec.cohesion) cell.cohesion = static_cast<float>(*spec.cohesion);
     if (spec.stem_density > 0) {
         cell.stem_drag = static_cast<float>(spec.stem_drag_coefficient * spec.stem_density * spec.stem_diameter / 2);

@@ -43,6 +43,7 @@ struct ModelValues {
     bool viscosity_on_ground = false;
     double turbulent_friction = 0;        ///< xi, m/s2; 0: none
     double turbulent_thickness = 0;       ///< m, at which xi applies as given; 0: at any thickness
+    double laminar_viscosity = 0;         ///< m2/s, of laminar drag; 0: none
     double cohesion = 0;                  ///< Pa, on the ground and inside
     double pore_pressure_ratio = 0;       ///< r_u, at the start of a release
     double pore_pressure_decay_time = 0;  ///< s; 0: constant

@@ -50,7 +50,7 @@ Model without_forces(const Model& model) {
     still.solver.depenetration_speed = 1e3;  // without inertia nothing can fly apart
     still.gravity = 0;
     still.friction_coefficient = still.building_friction_coefficient = still.internal_friction_coefficient = 0;
-    still.turbulent_friction = still.cohesion = 0;
+    still.turbulent_friction = still.laminar_viscosity = still.cohesion = 0;
     still.inertial_friction = {};
     still.cover = {};
     still.solver.internal_friction = params::InternalFriction::pair;

@@ -143,6 +143,7 @@ Status ActionReader::set_parameter(const json& entry) {
     spec.material = edit_.setup.material;
     parameter.set(spec, 0, *value ? params::ParameterValue(**value) : params::ParameterValue());
     if (parameter.key == "viscosity") spec.material.kinematic_viscosity.reset();
+    if (parameter.key == "laminar_viscosity_m2ps") spec.material.laminar_dynamic_viscosity.reset();
     spec.solver = context_.scene.spec.solver;
     if (Status s = check_live_rules(*params::find_section("material"), spec, context_.particle_spacing); !s) {
         return Error{"material." + s.error().message};

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cctype>
 #include <cmath>
 #include <ctime>
 #include <limits>
@@ -16,6 +15,7 @@
 #include "core/try.hpp"
 #include "run/run_scene.hpp"
 #include "run/verdict.hpp"
+#include "run/words.hpp"
 #include "scene/grid_cell.hpp"
 #include "twin/json_keys.hpp"
 
@@ -37,12 +37,6 @@ double processor_time() {
 double cells_of(const scene::Scene& scene, double cell) {
     const Extent e = scene.terrain.elevation().geometry.extent();
     return e.width() * e.height() / (cell * cell);
-}
-
-std::string sentence(std::string note) {
-    if (note.empty()) return note;
-    note[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(note[0])));
-    return note + ".";
 }
 
 /// Keeps depths over time within a number of bytes.
@@ -169,7 +163,7 @@ Result<DepthAveragedRun> run_depth_averaged(const scene::Scene& scene, const std
     DepthAveragedRun run;
     TALUS_ASSIGN(run.result, run::run_scene(scene, options));
     run.moments = moments.take();
-    for (const std::string& note : scene.notes) run.notes.push_back(sentence(note));
+    for (const std::string& note : scene.notes) run.notes.push_back(run::capitalised(note) + ".");
     run.processor_time = processor_time() - begun;
     if (run.result.status == run::RunStatus::interrupted && !stop) {
         run.result.stop_reason = fmt::format(

@@ -77,16 +77,22 @@ json compared(const scene::Scene& scene, const run::RunResult& particles, const 
     const run::AreaAgreement at_end = over ? now : second_opinion(scene, particles, whole).area;
 
     Rows rows(particles.observation, then.observation, whole.observation);
-    std::vector<double> told;
+    std::vector<std::string> told;
+    const auto once = [&](const std::string& what) {
+        const bool first = std::find(told.begin(), told.end(), what) == told.end();
+        if (first) told.push_back(what);
+        return first;
+    };
     for (const params::ObservationSpec& observed : scene.spec.observations) {
-        if (std::find(told.begin(), told.end(), observed.chainage) != told.end()) continue;
-        told.push_back(observed.chainage);
         const std::string at = fmt::format(" at {} m", report::plain(observed.chainage));
-        rows.add("front_velocity", "Front velocity" + at, "m/s", 1, [&](const auto& o) {
-            return front_at(o, observed.chainage).front_velocity;
-        })["observed"] = observed.front_velocity;
-        rows.add("front_arrival", "Front arrival" + at, "s", 1,
-                 [&](const auto& o) { return front_at(o, observed.chainage).arrival_time; });
+        if (once(observed.quantity() + at)) {
+            rows.add(observed.key(), observed.quantity() + at, "m/s", 1,
+                     [&](const auto& o) { return computed_for(observed, o); })["observed"] = observed.value();
+        }
+        if (once("Front arrival" + at)) {
+            rows.add("front_arrival", "Front arrival" + at, "s", 1,
+                     [&](const auto& o) { return front_at(o, observed.chainage).arrival_time; });
+        }
     }
     rows.add("front_chainage", "Front to chainage", "m", 0, [](const auto& o) { return o.run_out.front_chainage; });
     rows.add("run_out", "Run-out along the flow", "m", 0, [](const auto& o) { return o.run_out.along_flow; });

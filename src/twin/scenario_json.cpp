@@ -174,7 +174,8 @@ json Scenario::scene_json() const {
     for (const params::ObservationSpec& o : scene.spec.observations) {
         observations.push_back({{"name", o.name},
                                 {"chainage_m", o.chainage},
-                                {"front_velocity_mps", o.front_velocity},
+                                {"quantity", o.key()},
+                                {"observed_mps", o.value()},
                                 {"source", o.source}});
     }
     return {{"title", scene.spec.scene.title},

@@ -142,6 +142,7 @@ double value_in_force(const params::MaterialSpec& material, const params::Parame
     if (parameter.key == "viscosity" && material.kinematic_viscosity) return viscosity;
     const params::ParameterValue value = parameter.get(spec, 0);
     if (const double* number = std::get_if<double>(&value)) return *number;
+    if (parameter.key == "laminar_viscosity_m2ps") return params::laminar_viscosity_of(material);
     if (parameter.key == "turbulent_friction_mps2") return std::numeric_limits<double>::quiet_NaN();
     return material.friction_coefficient;  // both other optional ones follow it
 }

@@ -8,7 +8,8 @@ namespace {
 
 using nlohmann::json;
 
-constexpr const char* kinematic = "kinematic_viscosity_m2ps";
+/// What is not live, and is in the place of what is.
+constexpr const char* in_place_of_live[] = {"kinematic_viscosity_m2ps", "laminar_viscosity_Pas"};
 
 json material_json(const params::MaterialSpec& material) {
     params::SceneSpec spec;
@@ -20,7 +21,7 @@ json material_json(const params::MaterialSpec& material) {
         values[parameter.key] = number != nullptr ? json(*number) : json();
     };
     for (const params::Parameter* parameter : live_parameters()) add(*parameter);
-    add(*params::find_section("material")->find(kinematic));
+    for (const char* key : in_place_of_live) add(*params::find_section("material")->find(key));
     return values;
 }
 

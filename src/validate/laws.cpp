@@ -127,9 +127,12 @@ double momentum_jump(double froude) {
     return (low + high) / 2;
 }
 
-double SheetFlow::voellmy(double friction, double turbulent_friction) const {
-    const double driving = std::sin(slope) - friction * std::cos(slope);
-    return std::sqrt(std::max(0.0, turbulent_friction * thickness * driving));
+double SheetFlow::with_drag(double friction, double turbulent_friction, double viscosity) const {
+    const double driving = gravity * (std::sin(slope) - friction * std::cos(slope));
+    if (driving <= 0) return 0;
+    const double linear = 3 * viscosity / (thickness * thickness);
+    const double square = turbulent_friction > 0 ? gravity / (turbulent_friction * thickness) : 0;
+    return 2 * driving / (linear + std::sqrt(linear * linear + 4 * square * driving));
 }
 
 double SheetFlow::bingham(double height, double yield, double viscosity) const {

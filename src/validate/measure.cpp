@@ -7,6 +7,8 @@
 #include <limits>
 #include <numeric>
 
+#include "validate/case.hpp"
+
 namespace talus::validate {
 
 double percentile(std::vector<double> values, double share) {
@@ -37,6 +39,30 @@ double edge_of(const std::vector<double>& profile, double cell, double least) {
         return (static_cast<double>(k) - 0.5 + (inner - least) / (inner - outer)) * cell;
     }
     return 0;
+}
+
+double time_mean(const std::vector<double>& times, const std::vector<double>& readings, double from, double to) {
+    assert(times.size() == readings.size() && to > from);
+    constexpr double rounding = 1e-9;
+    if (times.empty() || times.front() > from + rounding || times.back() < to - rounding) return not_computed;
+    double sum = 0;
+    for (std::size_t k = 1; k < times.size(); ++k) {
+        const double begin = std::max(from, times[k - 1]), end = std::min(to, times[k]);
+        if (end <= begin) continue;
+        const double slope = (readings[k] - readings[k - 1]) / (times[k] - times[k - 1]);
+        sum += (end - begin) * (readings[k - 1] + slope * ((begin + end) / 2 - times[k - 1]));
+    }
+    return sum / (to - from);
+}
+
+double first_time_of(const std::vector<double>& times, const std::vector<double>& readings, double least) {
+    assert(times.size() == readings.size());
+    for (std::size_t k = 0; k < times.size(); ++k) {
+        if (readings[k] < least) continue;
+        if (k == 0) return times[0];
+        return times[k] - (times[k] - times[k - 1]) * (readings[k] - least) / (readings[k] - readings[k - 1]);
+    }
+    return not_computed;
 }
 
 ErrorNorms error_norms(const std::vector<double>& computed, const std::vector<double>& exact) {

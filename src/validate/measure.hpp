@@ -35,6 +35,14 @@ template <class Place>
 /// A percentile of the particles' distances lies further inside: the 99th of a perfect cone at 94 % of its radius.
 [[nodiscard]] double edge_of(const std::vector<double>& profile, double cell, double least);
 
+/// Mean over the time from `from` to `to` of what was read at `times`, straight between readings; NaN: they do not
+/// cover it.
+[[nodiscard]] double time_mean(const std::vector<double>& times, const std::vector<double>& readings, double from,
+                               double to);
+
+/// When the readings first reach `least`, straight between them; NaN: never.
+[[nodiscard]] double first_time_of(const std::vector<double>& times, const std::vector<double>& readings, double least);
+
 /// Error norms of a profile against the exact one on cells of equal size.
 struct ErrorNorms {
     double relative_l2 = 0;   ///< sqrt(sum of squared differences) / sqrt(sum of squared exact values)

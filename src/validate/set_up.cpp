@@ -4,6 +4,10 @@
 #include <cmath>
 #include <utility>
 
+#include <fmt/format.h>
+
+#include "sim/change.hpp"
+#include "sim/physics/viscosity.hpp"
 #include "sim/sources/seed.hpp"
 
 namespace talus::validate {
@@ -59,6 +63,17 @@ std::vector<terrain::Building> make_slice(const terrain::Terrain& terrain, doubl
     const Extent extent = terrain.elevation().geometry.extent();
     return {make_wall(terrain, extent.x_min, width / 2, extent.x_max, extent.y_max, height),
             make_wall(terrain, extent.x_min, extent.y_min, extent.x_max, -width / 2, height)};
+}
+
+std::vector<GateLeaf> opening_gate(double width, double opening, int pairs) {
+    std::vector<GateLeaf> leaves;
+    const double leaf = width / (2 * pairs);
+    for (int k = 0; k < pairs; ++k) {
+        const double gone = opening * (k + 0.5) / pairs;
+        leaves.push_back({-(k + 1) * leaf, -k * leaf, gone});
+        leaves.push_back({k * leaf, (k + 1) * leaf, gone});
+    }
+    return leaves;
 }
 
 std::vector<LocalPoint> fill_lattice(const Incline& incline, double spacing, double along, int columns_along,
@@ -118,7 +133,22 @@ run::RunStart endless(run::RunStart start, const Watch& watch) {
 }  // namespace
 
 Trial::Trial(run::RunStart start, const Watch& watch, OnFault on_fault)
-    : run_(endless(std::move(start), watch)), watch_(watch), on_fault_(on_fault) {}
+    : run_(endless(std::move(start), watch)), watch_(watch), on_fault_(on_fault) {
+    // As scenes refuse it: smoothing of more than the whole velocity difference is cut, and would be another viscosity.
+    const double longest = sim::longest_viscous_step(model().viscosity);
+    if (model().solver.time_step > longest * (1 + 1e-9)) {
+        problem_ = fmt::format("the viscosity needs steps of at most {:.3g} s, the case takes {:.3g} s", longest,
+                               *model().solver.time_step);
+        stopped_ = true;
+    }
+}
+
+void Trial::remove_wall(std::size_t building) {
+    run_.change([&](sim::Model& model, sim::Ground& ground, sim::State& state) {
+        sim::remove_building(model, ground, state, building);
+        return state.seeded;
+    });
+}
 
 bool Trial::advance_to(double time, const std::function<void()>& after_step) {
     while (!stopped_ && run_.summary().time < time - 1e-9) {

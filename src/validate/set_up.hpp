@@ -49,6 +49,17 @@ class Incline {
 /// Two walls along x over the whole ground, `width` apart: the space between is a slice.
 [[nodiscard]] std::vector<terrain::Building> make_slice(const terrain::Terrain& terrain, double width, double height);
 
+/// A strip of a gate across a channel, from `from` to `to` m from its middle, that is gone from a time on.
+struct GateLeaf {
+    double from = 0, to = 0;  ///< m
+    double gone = 0;          ///< s since the gate began to open
+};
+
+/// A gate of two doors that open evenly from the middle of a channel to its sides, in `opening` s: so many pairs of
+/// leaves, in the order in which they go, each when the doors' edges are at its middle. Of an `opening` of 0 all are
+/// gone at once.
+[[nodiscard]] std::vector<GateLeaf> opening_gate(double width, double opening, int pairs);
+
 /// Particles on the lattice of an incline, its first layer half a spacing above the ground: in every column of [0, n)
 /// spacings along and across from (`along`, `across`) as many as the thickness there requires. Remaining particles are
 /// distributed evenly over the columns, so that the volume is correct.
@@ -81,6 +92,9 @@ class Trial {
     /// Steps until `time`, calling `after_step` after each. False when it stopped before: `problem` says why.
     /// A reference to the state stays valid: debris that a device moves is copied before every call and at the end.
     bool advance_to(double time, const std::function<void()>& after_step = {});
+
+    /// Takes away a wall: the building at this place of the ground's.
+    void remove_wall(std::size_t building);
 
     [[nodiscard]] const sim::Model& model() const { return run_.model(); }
     [[nodiscard]] const sim::Ground& ground() const { return run_.ground(); }

@@ -246,9 +246,9 @@ TEST(Compression, IsReportedWithItsLimitsAndSaidWhenAboveThem) {
     const auto said = run_program(poor, {.folder = scene.folder()});
     ASSERT_EQ(said.exit_code, 0) << said.error;
     EXPECT_THAT(said.out, ContainsRegex("VERDICT +beyond .*compression"));
-    EXPECT_THAT(said.out, ContainsRegex("  debris too compressed during .* % of the simulated time; raise "
+    EXPECT_THAT(said.out, ContainsRegex("  Debris too compressed during .* % of the simulated time; raise "
                                         "solver.extra_iteration_count \\(now 0\\) or lower solver.time_step_s"));
-    EXPECT_THAT(read_text(scene.folder() / "poor/report.html"), HasSubstr("</b> debris too compressed during"));
+    EXPECT_THAT(read_text(scene.folder() / "poor/report.html"), HasSubstr("</b> Debris too compressed during"));
     EXPECT_THAT(read_text(scene.folder() / "poor/manifest.json"), HasSubstr("\"within_limits\": false"));
 }
 

@@ -1,4 +1,6 @@
 #include <cmath>
+#include <cstddef>
+#include <limits>
 
 #include "grids.hpp"
 
@@ -54,6 +56,23 @@ TEST(Sheet, reaches_the_speed_of_viscous_flow) {
     material.viscosity = 0.3;
     const double slope = 0.3, thickness = 0.5, exact = gravity * std::sin(slope) * thickness * thickness / (3 * 0.3);
     EXPECT_NEAR(sheet_speed(slope, thickness, 6, material), exact, 1e-3 * exact);
+}
+
+TEST(Sheet, has_the_viscosity_of_the_zone_that_it_flows_over) {
+    const double slope = 0.3, thickness = 0.5, viscosity = 0.3;
+    const auto bed = grid_of(160, 1, 1, [&](double x, double) { return -std::tan(slope) * x; });
+    depth::GroundValues ground;
+    ground.laminar_viscosity.assign(160, std::numeric_limits<float>::quiet_NaN());
+    for (std::size_t k = 60; k < 160; ++k) ground.laminar_viscosity[k] = static_cast<float>(viscosity);
+    depth::Material material;
+    material.viscosity = 0.6;
+    depth::Solver solver(bed, material, ground, depth::Edges::continued);
+    solver.add(grid_of<float>(160, 1, 1, [&](double, double) { return thickness / std::cos(slope); }));
+    advance_until(solver, 2);
+    const auto speed = [&](int column) { return solver.u_at(column, 0) / std::cos(slope); };
+    const auto exact = [&](double nu) { return gravity * std::sin(slope) * thickness * thickness / (3 * nu); };
+    EXPECT_NEAR(speed(130), exact(viscosity), 0.01 * exact(viscosity));
+    EXPECT_NEAR(speed(30), exact(0.6), 0.01 * exact(0.6)) << "as elsewhere";
 }
 
 TEST(Sheet, reaches_the_speed_of_bingham) {

@@ -33,10 +33,15 @@ class PredictTest : public testing::Test {
 };
 
 TEST_F(PredictTest, FrontAndArrivalAreThoseOfTheFront) {
-    run.front = {{10, 2, 5, observe::never}, {12, 3, 7, observe::never}};
-    EXPECT_DOUBLE_EQ(predict_front_velocity(run, 11), 6);
+    run.front = {{10, 2, 5, 8}, {12, 3, 7, 9}};
+    params::ObservationSpec front, debris;
+    front.chainage = debris.chainage = 11;
+    front.front_velocity = debris.debris_speed = 6;
+    EXPECT_DOUBLE_EQ(computed_for(front, run), 6);
+    EXPECT_DOUBLE_EQ(computed_for(debris, run), 8.5);
+    EXPECT_DOUBLE_EQ(predict_debris_speed(run, 11), 8.5);
     EXPECT_DOUBLE_EQ(predict_arrival_time(run, 11), 2.5);
-    EXPECT_TRUE(std::isnan(predict_front_velocity(run, 30)));
+    EXPECT_TRUE(std::isnan(predict_debris_speed(run, 30)));
     EXPECT_TRUE(std::isnan(predict_arrival_time(run, 30)));
     run.run_out.front_chainage = 12.5;
     EXPECT_DOUBLE_EQ(predict_front_chainage(run), 12.5);

@@ -93,14 +93,14 @@ TEST_F(ComparisonProducts, NothingIsSaidOfThemWithoutVariants) {
 }
 
 TEST_F(ComparisonProducts, ConvergenceUnknownIsNotCalledConverged) {
-    EXPECT_THAT(page(), HasSubstr("<dd class=\"beyond\"><b>Convergence.</b> not converged: 3 of 22 changes above their "
+    EXPECT_THAT(page(), HasSubstr("<dd class=\"beyond\"><b>Convergence.</b> Not converged: 3 of 22 changes above their "
                                   "limit, 1 of 3 runs missing"));
     EXPECT_THAT(sections(), HasSubstr("Not converged: 3 of 22 changes above their limit, 1 of 3 runs missing"));
 
     comparisons[0].rows.erase(comparisons[0].rows.begin() + 1);
-    EXPECT_THAT(page(), HasSubstr("<dd class=\"not-measured\"><b>Convergence.</b> convergence not known: "));
+    EXPECT_THAT(page(), HasSubstr("<dd class=\"not-measured\"><b>Convergence.</b> Convergence not known: "));
     comparisons[0].rows.pop_back();
-    EXPECT_THAT(page(), HasSubstr("<b>Convergence.</b> converged: none of 11 changes above its limit"));
+    EXPECT_THAT(page(), HasSubstr("<b>Convergence.</b> Converged: none of 11 changes above its limit"));
     EXPECT_THAT(sections(), HasSubstr("<b class=\"good\">Converged: none of 11 changes above its limit.</b>"));
 }
 

@@ -96,6 +96,26 @@ class SimulationTest(unittest.TestCase):
         self.assertEqual(after, [[True]], "the next call waits for the one before it")
         caller.close()
 
+    def test_ctrl_c_while_a_call_is_handed_over_cancels_it(self):
+        caller, interrupted, ended, after = _library.Caller(), threading.Event(), [], []
+        hand_over = caller._threads.submit
+
+        def interrupted_hand_over(*call):
+            caller._threads.submit = hand_over
+            hand_over(*call)
+            raise KeyboardInterrupt
+
+        def long_step(_):
+            ended.append(interrupted.wait(30))
+
+        caller._threads.submit = interrupted_hand_over
+        with self.assertRaises(KeyboardInterrupt):
+            caller(long_step, abandoned=lambda: after.append("freed"))
+        interrupted.set()
+        caller(lambda _: after.append(list(ended)))
+        self.assertEqual(after, ["freed", [True]])
+        caller.close()
+
     def test_reads_maps_front_and_structures(self):
         with open_slope() as simulation:
             simulation.advance(6)

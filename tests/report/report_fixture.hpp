@@ -144,8 +144,8 @@ inline scene::Scene sample_scene() {
     info.sources = {"Front velocities at 121 m and 217 m after GEO Report 169.", "No other data."};
     scene.spec.terrain.file = "terrain.tif";
     scene.spec.solver.particle_spacing = 0.42;
-    scene.spec.observations = {{"Superelevation at the bend", 121, 11, "GEO Report 169, superelevation marks"},
-                               {"Superelevation above the houses", 217, 7, "GEO Report 169, superelevation marks"}};
+    scene.spec.observations = {{"Superelevation at the bend", 121, 11, {}, "GEO Report 169, superelevation marks"},
+                               {"Superelevation above the houses", 217, 7, {}, "GEO Report 169, superelevation marks"}};
 
     params::ReleaseSpec release_spec;
     release_spec.name = "head scarp";

@@ -8,6 +8,7 @@
 #include "report/chart.hpp"
 #include "report/report_fixture.hpp"
 #include "report/results.hpp"
+#include "scene/depth_averaged_keys.hpp"
 
 namespace talus::report {
 namespace {
@@ -130,19 +131,19 @@ TEST(Report, HasOneVerdictBesideItsKeyFigures) {
     EXPECT_TRUE(has(good, "<span class=\"status complete\">complete</span>"));
     EXPECT_TRUE(has(good, "<dl class=\"verdict-box\">"));
     EXPECT_FALSE(has(good, "BEYOND"));
-    EXPECT_TRUE(has(words_of(good), "Convergence. not tested; talus run --convergence"));
+    EXPECT_TRUE(has(words_of(good), "Convergence. Not tested; talus run --convergence"));
     observe::Compression& c = s.result.observation.compression;
     c.worst_squeezed_share = 0.031;
     c.worst_squeezed_time = 12.3;
     c.time_share_above = 0.25;
     const std::string html = s.html();
-    EXPECT_TRUE(has(html, "BEYOND ITS LIMIT: COMPRESSION")) << "on the maps";
+    EXPECT_TRUE(has(html, "BEYOND LIMITS: COMPRESSION")) << "on the maps";
     const std::size_t verdict = html.find("<dl class=\"verdict-box beyond\">");
     ASSERT_NE(verdict, std::string::npos);
     EXPECT_LT(html.find("<h2>Key results"), verdict);
     EXPECT_LT(verdict, html.find("<dl class=\"cards\">"));
-    for (const char* part : {"<span class=\"status beyond\">complete, beyond its limit: compression</span>",
-                             "<dd class=\"beyond\"><b>Compression.</b> debris too compressed during 25 % of the "
+    for (const char* part : {"<span class=\"status beyond\">complete, beyond limits: compression</span>",
+                             "<dd class=\"beyond\"><b>Compression.</b> Debris too compressed during 25 % of the "
                              "simulated time</dd>",
                              "by more than 3&nbsp;% in up to 3.1&nbsp;% of the particles (at 12.3 s; limit 1&nbsp;%)",
                              "<code>solver.extra_iteration_count</code> (now 12)", "solver.displacement_limit"}) {
@@ -188,6 +189,17 @@ TEST(Report, OfADepthAveragedRunSaysNothingThatOnlyParticlesHave) {
                              "averaged over 0.2", "Over the crest", "Retained at the end"}) {
         EXPECT_TRUE(has(words, part)) << part;
     }
+}
+
+TEST(Report, OfADepthAveragedRunSaysWhetherDebrisFlies) {
+    Sample s;
+    s.scene.spec.solver.model = params::ModelChoice::depth_averaged;
+    s.result.grid_cell = 2.5;
+    EXPECT_TRUE(has(words_of(s.html()), "Debris does not leave the ground"));
+    s.scene.spec.solver.flight = true;
+    const std::string words = words_of(s.html());
+    EXPECT_TRUE(has(words, "lands by an impulse"));
+    EXPECT_FALSE(has(words, "does not leave the ground"));
 }
 
 TEST(Report, MissingVolumeIsNotCalledClosed) {
@@ -252,7 +264,8 @@ TEST(Report, PrintsEveryParameterWithItsUnit) {
             section.count(s.scene.spec) == 0)
             continue;
         for (const params::Parameter& parameter : section.parameters) {
-            EXPECT_TRUE(has(html, "<code>" + parameter.key + "</code>"));
+            const bool other = scene::for_depth_averaged_only(section.name + "." + parameter.key);
+            EXPECT_NE(has(html, "<code>" + parameter.key + "</code>"), other) << parameter.key;
         }
     }
     EXPECT_TRUE(has(html, "0.1 per 1/60 s"));

@@ -12,7 +12,7 @@ using testing::HasSubstr;
 class Compare : public testing::Test {
   protected:
     Compare() {
-        scene.spec.observations = {{"bend", 100, 9, ""}};
+        scene.spec.observations = {{"bend", 100, 9, {}, ""}};
         scene.flow_path = terrain::FlowPath({{0, 0}, {300, 0}}, 40);
         base.observation = observed(10, 12, 200);
     }
@@ -204,7 +204,7 @@ TEST_F(Compare, BuildingsHitMustBeTheSameButForATouch) {
 }
 
 TEST_F(Compare, TwoObservationsAtOnePlaceAreOneQuantity) {
-    scene.spec.observations.push_back({"again", 100, 8, ""});
+    scene.spec.observations.push_back({"again", 100, 8, {}, ""});
     add("finer", observed(10, 12, 200));
     EXPECT_EQ(compared().quantities.size(), 8U);
 }

@@ -176,6 +176,8 @@ TEST(StillMoving, says_what_and_how_fast) {
     EXPECT_EQ(with_what_moved("reached solver.end_time_s = 3", still_moving(rows, sample_of(3, 7, 3.21))),
               "reached solver.end_time_s = 3 with 7 m3 still moving (7 % of the debris), at up to 3.2 m/s; its kinetic "
               "energy was below 1 % of its peak from 2 s on");
+    EXPECT_EQ(with_what_moved("reached the end", still_moving({}, sample_of(3, 99.96, 123.4))),
+              "reached the end with 100 m3 still moving (100 % of the debris), at up to 123 m/s");
     const StillMoving most = still_moving(rows, sample_of(3, 80, 9));
     EXPECT_EQ(most.volume, 80);
     EXPECT_DOUBLE_EQ(most.share, 0.8);

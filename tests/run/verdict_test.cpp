@@ -7,6 +7,8 @@ namespace {
 
 using testing::ElementsAre;
 using testing::HasSubstr;
+using testing::MatchesRegex;
+using testing::StartsWith;
 
 /// A run of particles that keeps every limit.
 RunResult good_run() {
@@ -30,7 +32,7 @@ CheckState state_of(const RunResult& run, std::string_view key) {
 TEST(RunVerdict, of_a_good_run_is_within_limits) {
     const RunVerdict verdict = judge(good_run());
     EXPECT_TRUE(verdict.within_limits());
-    EXPECT_EQ(verdict.text(), "within limits");
+    EXPECT_EQ(verdict.text(), "Within limits");
     EXPECT_EQ(verdict.keys(), "");
     EXPECT_TRUE(verdict.warnings().empty());
     EXPECT_EQ(verdict.check("resolution").value, 3);
@@ -42,12 +44,12 @@ TEST(RunVerdict, of_a_good_run_is_within_limits) {
 TEST(RunVerdict, says_which_limit_is_exceeded_and_what_that_means) {
     RunResult run = good_run();
     run.observation.thickness.median = 0.45;
-    EXPECT_EQ(judge(run).text(), "beyond its limit: resolution");
+    EXPECT_EQ(judge(run).text(), "Beyond limits: resolution");
     EXPECT_THAT(judge(run).check("resolution").text, HasSubstr("0.9 particles thick"));
     EXPECT_THAT(judge(run).check("resolution").text, HasSubstr("mean little"));
 
     run.observation.compression.time_share_above = 0.2;
-    EXPECT_THAT(judge(run).check("compression").text, HasSubstr("too compressed during 20 %"));
+    EXPECT_THAT(judge(run).check("compression").text, HasSubstr("Debris too compressed during 20 %"));
 
     observe::Energy& energy = run.observation.energy;
     energy.share = 8;
@@ -64,11 +66,28 @@ TEST(RunVerdict, says_which_limit_is_exceeded_and_what_that_means) {
     run.observation.timeseries.back().volume_deposited = 70;
     EXPECT_THAT(judge(run).check("still_moving").text, HasSubstr("30 % of the debris (30 m3) still moved"));
 
+    run.observation.timeseries.back().volume_moving = 1510;
+    run.observation.timeseries.back().volume_deposited = 0.1;
+    EXPECT_THAT(judge(run).check("still_moving").text, StartsWith("100 % of the debris (1510 m3) still moved"));
+
     const RunVerdict verdict = judge(run);
     EXPECT_FALSE(verdict.within_limits());
-    EXPECT_EQ(verdict.text(), "beyond their limits: resolution, compression, energy, still moving");
+    EXPECT_EQ(verdict.text(), "Beyond limits: resolution, compression, energy, still moving");
     EXPECT_EQ(verdict.keys(), "resolution compression energy still_moving");
     EXPECT_EQ(verdict.warnings().size(), 4);
+}
+
+TEST(RunVerdict, is_in_sentences_that_begin_with_a_capital_where_they_stand_alone) {
+    RunResult thin = good_run(), grid = good_run(), empty, unfinished = good_run();
+    thin.observation.thickness.median = 0.45;
+    thin.observation.compression.time_share_above = 0.2;
+    grid.grid_cell = 2;
+    unfinished.status = RunStatus::interrupted;
+    for (const RunResult& run : {good_run(), thin, grid, empty, unfinished}) {
+        for (const Check& check : judge(run).checks) EXPECT_THAT(check.text, MatchesRegex("[A-Z0-9].*[^.]"));
+    }
+    EXPECT_THAT(judge(thin).warnings().at(0), StartsWith("Resolution: the flow is 0.9"));
+    EXPECT_THAT(judge_together({judge(thin)}).warnings().at(0), StartsWith("Resolution: beyond its limit in 1 of 1"));
 }
 
 TEST(RunVerdict, counts_energy_that_was_gained_at_any_speed) {
@@ -86,7 +105,7 @@ TEST(RunVerdict, does_not_judge_what_a_model_does_not_measure) {
     for (const char* key : {"resolution", "compression"}) {
         EXPECT_EQ(state_of(run, key), CheckState::not_measured);
         EXPECT_TRUE(std::isnan(judge(run).check(key).value));
-        EXPECT_THAT(judge(run).check(key).text, HasSubstr("not measured"));
+        EXPECT_THAT(judge(run).check(key).text, HasSubstr("Not measured"));
     }
     EXPECT_EQ(state_of(run, "energy"), CheckState::within);
 
@@ -104,7 +123,7 @@ TEST(RunVerdict, of_a_zoom_has_the_energy_of_what_feeds_it) {
     EXPECT_EQ(state_of(run, "energy"), CheckState::within);
     run.zoom->energy.share = 4;
     EXPECT_EQ(state_of(run, "energy"), CheckState::beyond);
-    EXPECT_THAT(judge(run).check("energy").text, HasSubstr("the depth-averaged run that feeds the zoom"));
+    EXPECT_THAT(judge(run).check("energy").text, HasSubstr("In the depth-averaged run that feeds the zoom, the flow"));
 }
 
 TEST(RunVerdict, of_many_runs_has_the_worst_and_how_many_there_are) {
@@ -114,9 +133,9 @@ TEST(RunVerdict, of_many_runs_has_the_worst_and_how_many_there_are) {
     const RunVerdict all = judge_together({judge(good_run()), judge(thinner), judge(thin)});
     EXPECT_EQ(all.check("resolution").value, 0.9);
     EXPECT_THAT(all.check("resolution").text,
-                HasSubstr("beyond its limit in 2 of 3 runs; in the worst, the flow is 0.9"));
+                HasSubstr("Beyond its limit in 2 of 3 runs; in the worst, the flow is 0.9"));
     EXPECT_EQ(all.check("energy").state, CheckState::within);
-    EXPECT_EQ(all.text(), "beyond its limit: resolution");
+    EXPECT_EQ(all.text(), "Beyond limits: resolution");
     EXPECT_TRUE(judge_together({}).within_limits());
 }
 
@@ -126,7 +145,7 @@ TEST(RunVerdict, is_read_as_it_was_written) {
     const RunVerdict verdict = judge(run);
     const auto json = verdict_json(verdict);
     EXPECT_EQ(json["within_limits"], false);
-    EXPECT_EQ(json["text"], "beyond its limit: resolution");
+    EXPECT_EQ(json["text"], "Beyond limits: resolution");
     EXPECT_THAT(json["warnings"][0].get<std::string>(), HasSubstr("Resolution: the flow is 0.9"));
     EXPECT_EQ(json["checks"][0]["state"], "beyond");
     EXPECT_EQ(json["checks"][0]["value"], 0.9);
@@ -147,8 +166,8 @@ TEST(RunVerdict, is_that_of_convergence_where_it_was_tested) {
     row.changes = {change};
     tested.rows = {row};
     const RunVerdict verdict = judge(good_run(), {tested});
-    EXPECT_EQ(verdict.text(), "beyond its limit: convergence");
-    EXPECT_THAT(verdict.check("convergence").text, HasSubstr("not converged: 1 of 1 changes above its limit"));
+    EXPECT_EQ(verdict.text(), "Beyond limits: convergence");
+    EXPECT_THAT(verdict.check("convergence").text, HasSubstr("Not converged: 1 of 1 changes above its limit"));
     tested.rows[0].changes[0].verdict = Verdict::pass;
     EXPECT_EQ(judge(good_run(), {tested}).check("convergence").state, CheckState::within);
     tested.kind = ComparisonKind::sensitivity;

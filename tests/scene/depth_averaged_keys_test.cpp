@@ -13,6 +13,7 @@ namespace {
 using testing::Contains;
 using testing::HasSubstr;
 using testing::IsEmpty;
+using testing::Not;
 
 TEST(DepthAveragedKeys, hold_every_key_of_the_schema_once) {
     std::multiset<std::string_view> used;
@@ -73,6 +74,33 @@ TEST_F(DepthAveragedScene, notes_every_key_that_means_something_to_particles_onl
         tried.push_back(key);
     }
     EXPECT_GT(tried.size(), 20U);
+}
+
+TEST_F(DepthAveragedScene, notes_every_key_that_means_nothing_to_particles) {
+    const std::string keys = "[solver]\nflight = true\ngrid_cell_m = 2\n";
+    write_valley(keys);
+    const auto scene = load_scene(folder / "scene.toml"),
+               grid = load_scene(folder / "scene.toml", {"solver.model=depth_averaged"});
+    ASSERT_TRUE(scene && grid);
+    for (const DepthAveragedKey& entry : depth_averaged_keys()) {
+        if (entry.use != KeyUse::own) continue;
+        EXPECT_TRUE(for_depth_averaged_only(entry.key));
+        EXPECT_THAT(scene->notes, Contains(testing::AllOf(HasSubstr("particles have no use for"),
+                                                          HasSubstr(std::string(entry.key)))));
+    }
+    EXPECT_THAT(grid->notes, testing::Each(Not(HasSubstr("no use for"))));
+    EXPECT_THAT(grid->notes, testing::Each(Not(HasSubstr("no falls"))));
+    write_valley("");
+    const auto without = load_scene(folder / "scene.toml");
+    ASSERT_TRUE(without);
+    EXPECT_THAT(without->notes, testing::Each(Not(HasSubstr("no use for"))));
+    // The depth-averaged run that feeds a zoom has a use for them.
+    write_valley(keys + fmt::format("[[barrier]]\nname = \"dam\"\nline_m = [[{0}, {1}], [{0}, {2}]]\nheight_m = 5\n"
+                                    "[zoom]\nstructure = \"dam\"\n",
+                                    west + 150, south + 60, south + 140));
+    const auto zoom = load_scene(folder / "scene.toml");
+    ASSERT_TRUE(zoom) << zoom.error().message;
+    EXPECT_THAT(zoom->notes, testing::Each(Not(HasSubstr("no use for"))));
 }
 
 TEST_F(DepthAveragedScene, refuses_what_the_model_lacks) {

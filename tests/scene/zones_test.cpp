@@ -48,6 +48,28 @@ TEST_F(Zones, APolygonHoldsOnTheCellsWhoseCentresItCovers) {
     }
 }
 
+TEST_F(Zones, ALaminarViscosityIsThatOfTheGround) {
+    const Scene scene = loaded(
+        "[[zone]]\npolygon = \"824100 825050, 824150 825050, 824150 825100, 824100 825100\"\n"
+        "laminar_viscosity_m2ps = 0.07\n");
+    ASSERT_TRUE(scene.cover.has_viscosities());
+    const auto viscosity = [&](double x, double y) {
+        return scene.cover.viscosity_at(x - columns * cell / 2, y - rows * cell / 2);
+    };
+    EXPECT_FLOAT_EQ(static_cast<float>(viscosity(120, 70)), 0.07F);
+    EXPECT_TRUE(std::isnan(viscosity(160, 70)));
+}
+
+TEST_F(Zones, ViscosityIsGivenOnceOnly) {
+    EXPECT_THAT(refusal("[material]\nlaminar_viscosity_m2ps = 0.04\nlaminar_viscosity_Pas = 80\n"),
+                HasSubstr("leave one of them out"));
+    EXPECT_THAT(refusal("[material]\nlaminar_viscosity_m2ps = 0.04\nviscosity_on_ground = true\n"),
+                HasSubstr("viscosity_on_ground = true is refused"));
+    EXPECT_THAT(refusal("[material]\nviscosity_on_ground = true\n[[zone]]\nlaminar_viscosity_m2ps = 0.04\npolygon = "
+                        "\"824100 825050, 824150 825050, 824150 825100\"\n"),
+                HasSubstr("zone[0].laminar_viscosity_m2ps = 0.04 is refused"));
+}
+
 TEST_F(Zones, LaterOnesGoBeforeEarlierOnesWhereTheySaySomething) {
     write_features("forest.geojson", {rectangle(100, 50, 200, 150)});
     const Scene scene = loaded(

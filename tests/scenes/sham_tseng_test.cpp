@@ -169,12 +169,12 @@ void expect_the_landslide(const scene::Scene& scene) {
     EXPECT_EQ(scene.spec.material.rest_density, 2000);
     std::vector<std::string> variants;
     for (const params::VariantSpec& variant : scene.spec.variants) variants.push_back(variant.name);
-    EXPECT_EQ(variants, (std::vector<std::string>{"paper", "ls-dyna", "guidance", "reconstruction"}));
+    EXPECT_EQ(variants, (std::vector<std::string>{"paper", "ls-dyna", "voellmy", "guidance", "reconstruction"}));
     ASSERT_EQ(scene.spec.observations.size(), 2U);
     EXPECT_EQ(scene.spec.observations[0].chainage, 121);
-    EXPECT_EQ(scene.spec.observations[0].front_velocity, 11);
+    EXPECT_EQ(scene.spec.observations[0].debris_speed, 11);
     EXPECT_EQ(scene.spec.observations[1].chainage, 217);
-    EXPECT_EQ(scene.spec.observations[1].front_velocity, 7);
+    EXPECT_EQ(scene.spec.observations[1].debris_speed, 7);
     bool kitchen = false;
     for (const terrain::Building& building : scene.buildings) kitchen |= building.name == "House 38, kitchen";
     EXPECT_TRUE(kitchen);
@@ -195,7 +195,7 @@ TEST(Scenes, BothHaveTheSameMaterial) {
     const auto reconstruction = scene::parse_scene(files[0]), official = scene::parse_scene(files[1]);
     ASSERT_TRUE(reconstruction.ok() && official.ok());
     EXPECT_EQ(reconstruction->material.friction_coefficient, official->material.friction_coefficient);
-    EXPECT_EQ(reconstruction->material.turbulent_friction, official->material.turbulent_friction);
+    EXPECT_EQ(reconstruction->material.laminar_viscosity, official->material.laminar_viscosity);
     EXPECT_EQ(reconstruction->material.viscosity, official->material.viscosity);
     for (const auto& file : files) {
         const auto published = scene::parse_scene(file, {"variant=paper"});
@@ -203,6 +203,7 @@ TEST(Scenes, BothHaveTheSameMaterial) {
         EXPECT_EQ(published->material.friction_coefficient, 0.4);
         EXPECT_EQ(published->material.viscosity, 0.1);
         EXPECT_FALSE(published->material.turbulent_friction);
+        EXPECT_FALSE(published->material.laminar_viscosity);
         EXPECT_FALSE(published->material.internal_friction_coefficient);
     }
     if (!given) unsetenv("TALUS_DATA");

@@ -121,7 +121,7 @@ terrain::GroundCover half_and_half(const terrain::Terrain& terrain) {
     Grid<terrain::CoverCell> cells(terrain.elevation().geometry, {none, none, none, 0});
     for (int row = 0; row < cells.geometry.rows / 2; ++row) {
         for (int column = 0; column < cells.geometry.columns; ++column)
-            cells.at(column, row) = {0.6F, 0.01F, 500, 0.05F};
+            cells.at(column, row) = {0.6F, 0.01F, 500, 0.05F, 0.08F};
     }
     return terrain::GroundCover(cells);
 }
@@ -130,6 +130,7 @@ params::MaterialSpec everything() {
     params::MaterialSpec material;
     material.turbulent_friction = 300;
     material.turbulent_friction_thickness = 0.7;
+    material.laminar_viscosity = 0.03;
     material.cohesion = 200;
     material.pore_pressure_ratio = 0.4;
     material.pore_pressure_decay_time = 0.5;

@@ -5,6 +5,7 @@
 
 #include <gtest/gtest.h>
 
+#include "sim/physics/columns.hpp"
 #include "sim/physics/stress.hpp"
 #include "sim/physics/viscosity.hpp"
 #include "sim_fixtures.hpp"
@@ -53,6 +54,113 @@ TEST(VoellmyDrag, falls_with_the_cube_root_of_the_thickness_where_it_is_given_fo
     EXPECT_NEAR(drag(manning, 0.15) / drag(same, 0.15), 1, 2e-4);
     EXPECT_NEAR(drag(manning, 1.2) / drag(same, 1.2), 0.5, 2e-4) << "eight times as thick";
     EXPECT_NEAR(drag(manning, 0.01875) / drag(same, 0.01875), 2, 2e-4);
+}
+
+/// Speed after dv/dt = -(a v + b v^2), by many small steps of the midpoint rule.
+double slowed_by_steps(double speed, double a, double b, double time) {
+    constexpr int steps = 20000;
+    const double dt = time / steps;
+    for (int k = 0; k < steps; ++k) {
+        const double middle = speed - dt / 2 * (a * speed + b * speed * speed);
+        speed -= dt * (a * middle + b * middle * middle);
+    }
+    return speed;
+}
+
+TEST(LaminarDrag, is_that_of_the_thickness_of_the_flow) {
+    params::MaterialSpec material;
+    material.laminar_viscosity = 0.05;
+    const Model model = model_of(material);
+    ASSERT_TRUE(slows_by_speed(model));
+    const auto ground = ground_resistance(model, Vec3<double>{});
+    const double dt = 1e-5;
+    const auto slower = slowed_by_drag(model, ground, level(), 0.4, 0.5, {3, 4, -1}, dt);
+    EXPECT_NEAR((5 - std::hypot(slower.x, slower.y)) / dt, 3 * 0.05 * 5 / 0.25, 1e-3);
+    EXPECT_EQ(slower.z, -1) << "along the ground only";
+    EXPECT_EQ(slowed_by_drag(model, ground, level(), 0.61, 0.5, {5, 0, 0}, 0.1).x, 5) << "in the air above the flow";
+}
+
+TEST(LaminarDrag, follows_its_equation_over_a_step_beside_turbulent_drag) {
+    params::MaterialSpec material;
+    material.laminar_viscosity = 0.05;
+    material.turbulent_friction = 300;
+    const Model model = model_of(material);
+    const auto ground = ground_resistance(model, Vec3<double>{});
+    for (const double thickness : {0.1, 0.2, 0.5}) {
+        const double a = 0.15 / (thickness * thickness), b = model.gravity / (300 * thickness);
+        for (const double dt : {0.001, 0.01, 0.03}) {
+            const double exact = slowed_by_steps(8, a, b, dt);
+            EXPECT_NEAR(slowed_by_drag(model, ground, level(), 0.05, thickness, {8, 0, 0}, dt).x, exact, 2e-4 * exact);
+        }
+    }
+}
+
+TEST(LaminarDrag, never_reverses_the_motion_however_stiff_it_is) {
+    params::MaterialSpec material;
+    material.laminar_viscosity = 1e6;
+    material.turbulent_friction = 1;
+    const Model model = model_of(material);
+    const auto ground = ground_resistance(model, Vec3<float>{});
+    const terrain::GroundSample<float> flat{0, {0, 0, 1}};
+    for (const float thickness : {0.0025F, 0.1F, 10.0F}) {
+        const float left = slowed_by_drag(model, ground, flat, 0.0F, thickness, {1000, 0, 0}, 0.1F).x;
+        EXPECT_GE(left, 0) << thickness;
+        EXPECT_LT(left, 0.01F) << thickness;
+    }
+}
+
+TEST(LaminarDrag, is_the_same_from_dynamic_and_kinematic_viscosity) {
+    params::MaterialSpec material;
+    material.rest_density = 1800;
+    material.laminar_dynamic_viscosity = 90;
+    EXPECT_DOUBLE_EQ(model_of(material).laminar_viscosity, 0.05);
+}
+
+TEST(LaminarDrag, is_that_of_the_zone) {
+    Model model = model_of({});
+    Grid<terrain::CoverCell> cells(inclined_plane(0, 10, 10).elevation().geometry, {none, none, none, 0});
+    model.cover = terrain::GroundCover(cells);
+    EXPECT_FALSE(slows_by_speed(model));
+    cells.at(5, 5).laminar_viscosity = 0.2F;
+    model.cover = terrain::GroundCover(cells);
+    ASSERT_TRUE(slows_by_speed(model));
+    EXPECT_FLOAT_EQ(ground_resistance(model, Vec3<float>{0.5, 0.5, 0}).laminar_viscosity, 0.2F);
+    EXPECT_EQ(ground_resistance(model, Vec3<float>{1.5, 0.5, 0}).laminar_viscosity, 0) << "as elsewhere";
+}
+
+TEST(FlowThickness, counts_scattered_particles_as_the_area_does) {
+    // Particles at random: the mean over them of what a column holds is one particle of their own too high.
+    std::uint64_t seed = 7;
+    const auto random = [&] {
+        seed = seed * 6364136223846793005U + 1442695040888963407U;
+        return static_cast<double>(seed >> 33U) / 2147483648.0;
+    };
+    constexpr int columns = 60;
+    for (const double mean : {0.5, 1.0, 2.0}) {
+        std::vector<Vec3<float>> points(static_cast<std::size_t>(mean * columns * columns));
+        for (auto& p : points) p = {static_cast<float>(columns * random()), static_cast<float>(columns * random()), 0};
+        Grid<double> held(GridGeometry{0, 0, 1, columns + 2, columns + 2}, 0);
+        const auto at = [&](std::int64_t column, std::int64_t row) -> double& {
+            return held.at(static_cast<int>(column) + 1, static_cast<int>(row) + 1);
+        };
+        for (const auto& p : points) {
+            for_each_column(p.x, p.y, 1, [&](auto column, auto row, float share) { at(column, row) += share; });
+        }
+        double counted = 0, plain = 0;
+        int inside = 0;
+        for (const auto& p : points) {
+            if (p.x < 2 || p.x > columns - 2 || p.y < 2 || p.y > columns - 2) continue;
+            double here = 0;
+            for_each_column(p.x, p.y, 1, [&](auto column, auto row, float share) { here += share * at(column, row); });
+            plain += here;
+            counted += counted_by_area(here);
+            ++inside;
+        }
+        EXPECT_NEAR(plain / inside, mean + 4.0 / 9, 0.08 * mean) << "with the particle itself";
+        EXPECT_NEAR(counted / inside, mean, 0.16 * mean);
+        EXPECT_GT(plain / inside - mean, 2 * (counted / inside - mean));
+    }
+    for (const double layers : {2, 3, 10}) EXPECT_DOUBLE_EQ(counted_by_area(4 * layers), 4 * layers) << "as it is";
 }
 
 TEST(CubeRoot, is_that_of_the_library_to_a_ten_thousandth) {
@@ -120,7 +228,9 @@ TEST(VoellmyDrag, holds_for_debris_that_is_thinner_than_a_particle) {
     material.friction_coefficient = 0.2;
     material.turbulent_friction = 150;
     material.viscosity = 0;
-    const double thickness = 0.001 / (apart * apart);  // m, of particles of 0.1 m
+    // Particles of 0.1 m in a lattice: none stands where there are more than elsewhere, as scattered ones do.
+    const double in_column = 0.04 / (apart * apart), thickness = counted_by_area(in_column) * 0.001 / 0.04;  // 1, m
+    EXPECT_NEAR(thickness, 0.001 / (apart * apart), 0.18 * 0.001 / (apart * apart));
     const double law = std::sqrt(150 * thickness * (std::sin(slope) - 0.2 * std::cos(slope)));
     EXPECT_NEAR(speed_of_thin_layer(0.7 * law, apart, material, slope), law, 0.06 * law);
     EXPECT_NEAR(speed_of_thin_layer(1.3 * law, apart, material, slope), law, 0.06 * law);

@@ -75,6 +75,7 @@ scene::Scene abused_scene(unsigned seed) {
     material.friction_coefficient = dice.from(0, 1);
     material.viscosity = dice.from(0, 0.5);
     if (dice.once_in(2)) material.turbulent_friction = dice.from(50, 2000);
+    if (dice.once_in(3)) material.laminar_viscosity = dice.from(0, 0.2);
     if (dice.once_in(3)) material.cohesion = dice.from(0, 5000);
     if (dice.once_in(3)) material.pore_pressure_ratio = dice.from(0, 0.9);
     if (dice.once_in(3)) material.internal_friction_coefficient = dice.from(0, 1);

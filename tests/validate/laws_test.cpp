@@ -28,8 +28,8 @@ TEST(ColumnLaws, HaveTheValuesOfTheirPapers) {
 
 TEST(SheetFlow, HasTheVelocitiesOfItsLaws) {
     const SheetFlow sheet{30 * degrees, 2, gravity};
-    EXPECT_NEAR(sheet.voellmy(0.2, 500), std::sqrt(1000 * (0.5 - 0.2 * 0.8660254)), 1e-6);
-    EXPECT_EQ(sheet.voellmy(0.6, 500), 0);
+    EXPECT_NEAR(sheet.with_drag(0.2, 500, 0), std::sqrt(1000 * (0.5 - 0.2 * 0.8660254)), 1e-6);
+    EXPECT_EQ(sheet.with_drag(0.6, 500, 0), 0);
     // A yield stress of half the weight's pull: the upper half is a plug.
     const double yield = gravity * 0.5, viscosity = 0.3;
     EXPECT_NEAR(sheet.bingham(0.5, yield, viscosity), gravity * 0.5 / 0.3 * (0.5 - 0.125), 1e-9);

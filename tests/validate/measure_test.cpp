@@ -33,6 +33,22 @@ TEST(EdgeOf, IsWhereTheProfileFallsBelowForGood) {
     EXPECT_EQ(edge_of({1, 1}, 1, 0.5), 0) << "the profile ends before the deposit";
 }
 
+TEST(TimeMean, IsThatOfReadingsWithStraightLinesBetween) {
+    const std::vector<double> times{0, 1, 2, 4}, readings{0, 2, 2, 0};
+    EXPECT_DOUBLE_EQ(time_mean(times, readings, 0, 1), 1);
+    EXPECT_DOUBLE_EQ(time_mean(times, readings, 0.5, 1.5), (0.75 + 1) / 1);
+    EXPECT_DOUBLE_EQ(time_mean(times, readings, 0, 4), (1 + 2 + 2) / 4.0);
+    EXPECT_TRUE(std::isnan(time_mean(times, readings, 3, 5))) << "the run was over";
+    EXPECT_TRUE(std::isnan(time_mean({}, {}, 0, 1)));
+}
+
+TEST(FirstTime, IsWhereALineBetweenReadingsReachesTheValue) {
+    EXPECT_DOUBLE_EQ(first_time_of({0, 1, 2}, {0, 0, 4}, 1), 1.25);
+    EXPECT_DOUBLE_EQ(first_time_of({0, 1, 2, 3}, {0, 4, 0, 4}, 2), 0.5);
+    EXPECT_EQ(first_time_of({3, 4}, {2, 0}, 1), 3);
+    EXPECT_TRUE(std::isnan(first_time_of({0, 1}, {0, 1}, 2)));
+}
+
 /// A box of particles on an incline: what is put in must be read off again.
 class Box : public testing::Test {
   protected:

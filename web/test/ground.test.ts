@@ -9,7 +9,7 @@ import { groundUnder } from "../src/state/picking";
 import { canReshape, fewestPoints, hasOutline, itemOf, mostPoints, pointsOf, type Item } from "../src/state/shapes";
 
 const square = (west: number, south: number, side: number): Point[] => [[west, south], [west + side, south], [west + side, south + side], [west, south + side]];
-const zone = (id: string, polygons: Point[][][]): Zone => ({ id, name: id, polygons, area_m2: 0, friction_coefficient: 0.4, turbulent_friction_mps2: null, cohesion_Pa: null,
+const zone = (id: string, polygons: Point[][][]): Zone => ({ id, name: id, polygons, area_m2: 0, friction_coefficient: 0.4, turbulent_friction_mps2: null, laminar_viscosity_m2ps: null, cohesion_Pa: null,
   stem_density_pm2: 0, stem_diameter_m: 0.3, stem_drag_coefficient: 1, from_scene: false });
 const bed = (id: string, polygons: Point[][][]): Bed => ({ id, name: id, polygons, area_m2: 0, volume_m3: 120, depth_m: 1.5, law: "growth", growth_rate_per_m: 0.01,
   critical_shear_stress_Pa: 1000, erosion_rate_mps: 0.025, erosion_depth_mpPa: 1e-4, from_scene: false, in_force: true });

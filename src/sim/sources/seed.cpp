@@ -158,6 +158,7 @@ void set_material(Model& model, const params::MaterialSpec& material) {
     model.viscosity_on_ground = material.viscosity_on_ground;
     model.turbulent_friction = material.turbulent_friction.value_or(0);
     model.turbulent_thickness = material.turbulent_friction_thickness.value_or(0);
+    model.laminar_viscosity = params::laminar_viscosity_of(material);
     model.cohesion = material.cohesion;
     model.pore_pressure_ratio = material.pore_pressure_ratio;
     model.pore_pressure_decay_time = material.pore_pressure_decay_time.value_or(0);

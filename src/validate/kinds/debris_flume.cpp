@@ -1,5 +1,8 @@
 #include <algorithm>
 #include <cmath>
+#include <map>
+#include <optional>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -7,6 +10,7 @@
 #include "depth/material.hpp"
 #include "depth/solver.hpp"
 #include "sim/sources/seed.hpp"
+#include "validate/flume.hpp"
 #include "validate/kinds/kinds.hpp"
 #include "validate/measure.hpp"
 #include "validate/set_up.hpp"
@@ -17,242 +21,317 @@ namespace debris_flume {
 constexpr Quantity quantities[] = {
     {"arrival_time", "s", false, Quantity::Site::none,
      "of debris 2 cm thick at a station, since the gate began to open"},
-    {"thickness", "m", false, Quantity::Site::none, "at a station and a time, over half a metre of the channel"},
+    {"thickness", "m", false, Quantity::Site::none,
+     "at a station about a time: mean over mean_time_s and half a metre of the channel"},
     {"run_up", "m", false, Quantity::Site::none,
      "greatest height above the foot of an obstacle: of debris at a wall, of the ground reached on a ramp"},
 };
 
 struct FlumeSpec {
-    double slope = 0, pad_slope = 0;      // rad
-    double bend_start = 0, bend_end = 0;  // m from the gate along the bed
-    double width = 0, volume = 0;         // m, m3
-    double gate_time = 0;                 // s
-    std::vector<double> spacings;         // m
-    std::vector<double> stations;         // m from the gate along the bed
-    std::vector<NumberPair> samples;      // station in m, time in s
-    double obstacle = 0, ramp_angle = 0;  // m along the bed, rad
-    double end = 0;                       // s
+    FlumeShape shape;
+    double gate_time = 0;             // s
+    double mean_time = 0;             // s
+    double grid_cell = 0;             // m
+    std::vector<double> spacings;     // m
+    std::vector<double> stations;     // m from the gate along the bed
+    std::vector<NumberPair> samples;  // station in m, time in s
+    double obstacle = 0;              // m along the bed
+    double ramp_angle = 0;            // rad
+    double end = 0;                   // s
 };
 
 enum class Obstacle { none, wall, ramp };
 
-/// The bed by the distance s along it from the gate: steep, bent as a circle, nearly level.
-class Bed {
-  public:
-    Bed(const FlumeSpec& spec, Obstacle obstacle) : foot_(spec.obstacle), first_(-start), points_(count) {
-        PlanPoint p{};
-        for (std::size_t k = 0; k < points_.size(); ++k) {
-            points_[k] = p;
-            const double s = place(k), bent = (s - spec.bend_start) / (spec.bend_end - spec.bend_start);
-            double fall = spec.slope + std::clamp(bent, 0.0, 1.0) * (spec.pad_slope - spec.slope);
-            if (obstacle == Obstacle::ramp && s > foot_) fall = -spec.ramp_angle;
-            p = {p.x + step * std::cos(fall), p.y - step * std::sin(fall)};
-        }
-        middle_ = (points_.front().x + points_.back().x) / 2;
-    }
+FlumeBed bed_of(const FlumeSpec& spec, Obstacle obstacle) {
+    if (obstacle != Obstacle::ramp) return FlumeBed(spec.shape);
+    return FlumeBed(spec.shape, FlumeRamp{spec.obstacle, spec.ramp_angle});
+}
 
-    [[nodiscard]] double length() const { return points_.back().x - points_.front().x; }
-    /// Plan x in a world around the middle, and elevation, of a place along the bed.
-    [[nodiscard]] PlanPoint at(double s) const {
-        const double u = std::clamp((s - first_) / step, 0.0, static_cast<double>(points_.size()) - 1.001);
-        const auto k = static_cast<std::size_t>(u);
-        const double t = u - static_cast<double>(k);
-        const PlanPoint &a = points_[k], &b = points_[k + 1];
-        return {a.x + t * (b.x - a.x) - middle_, a.y + t * (b.y - a.y)};
-    }
-    /// The place along the bed below a plan x.
-    [[nodiscard]] double along(double x) const {
-        const auto next = std::lower_bound(points_.begin(), points_.end(), x + middle_,
-                                           [](const PlanPoint& p, double value) { return p.x < value; });
-        const auto k = std::clamp<std::ptrdiff_t>(next - points_.begin(), 1, static_cast<std::ptrdiff_t>(count) - 1);
-        const PlanPoint &a = points_[static_cast<std::size_t>(k - 1)], &b = points_[static_cast<std::size_t>(k)];
-        return place(static_cast<std::size_t>(k - 1)) + step * (x + middle_ - a.x) / (b.x - a.x);
-    }
-
-  private:
-    static constexpr double step = 0.02, start = 12;  // m; the bed extends this far behind the gate
-    static constexpr std::size_t count = 6300;        // to s = 114 m
-
-    [[nodiscard]] double place(std::size_t k) const { return first_ + step * static_cast<double>(k); }
-
-    double foot_, first_, middle_ = 0;
-    std::vector<PlanPoint> points_;
-};
-
+/// What happens at the stations and the obstacle.
 struct Measured {
-    std::vector<double> arrivals, thicknesses;  // by station, by sample
+    std::vector<double> time;                         ///< s
+    std::map<double, std::vector<double>> thickness;  ///< m, over time, by station
     double run_up = not_computed;
     std::size_t particles = 0;
     std::string problem;
-    std::vector<std::vector<double>> time, depth;  // by station
+
+    [[nodiscard]] double arrival(double station) const { return first_time_of(time, thickness.at(station), arrived); }
+    [[nodiscard]] double mean(double station, double at, double over) const {
+        return time_mean(time, thickness.at(station), at - over / 2, at + over / 2);
+    }
+
+    static constexpr double arrived = 0.02;                 // m thick
+    static constexpr double window = 0.5, interval = 0.02;  // m along the bed, s between readings
 };
 
-/// Debris with a level surface behind a gate at right angles to the bed, which is removed instantly.
-std::vector<LocalPoint> fill_behind_gate(const FlumeSpec& spec, const Bed& bed, const terrain::Terrain& terrain,
-                                         double spacing, std::vector<double>& above) {
-    const double deepest = std::sqrt(2 * spec.volume / spec.width * std::tan(spec.slope));
-    const double sine = std::sin(spec.slope), cosine = std::cos(spec.slope);
-    const auto across = static_cast<int>(std::lround(spec.width / spacing));
-    const double pitch = spec.width / across;
-    std::vector<LocalPoint> points;
-    for (int i = 0; (i + 0.5) * spacing * std::tan(spec.slope) < deepest; ++i) {
-        const double s = -(i + 0.5) * spacing, thickness = deepest + s * std::tan(spec.slope);
-        const PlanPoint ground = bed.at(s);
-        for (int j = 0; j < across; ++j) {
-            for (int k = 0; (k + 0.5) * spacing < thickness; ++k) {
-                const double n = (k + 0.5) * spacing;
-                points.push_back(terrain.frame().to_local(
-                    {ground.x + n * sine, -spec.width / 2 + (j + 0.5) * pitch, ground.y + n * cosine}));
-                above.push_back(thickness - n);
+/// A run of either model: it knows the thickness of the debris about a place along the bed, as a mean over the window
+/// and the width.
+class Flow {
+  public:
+    virtual ~Flow() = default;
+    /// Until so many seconds after the gate began to open. False: it ended before, see problem().
+    virtual bool advance_to(double time) = 0;
+    virtual void read(const std::vector<double>& places, std::vector<double>& thickness) = 0;
+    virtual double depth_at_wall() = 0;
+    [[nodiscard]] virtual std::string problem() const = 0;
+};
+
+Measured measure(Flow& flow, const FlumeSpec& spec, const FlumeBed& bed, Obstacle obstacle) {
+    Measured measured;
+    std::vector<double> places = spec.stations, thickness;
+    for (const NumberPair& sample : spec.samples) places.push_back(sample[0]);
+    const std::size_t stations = places.size();
+    for (double s = Measured::window / 2; obstacle == Obstacle::ramp && s < 8; s += Measured::window) {
+        places.push_back(spec.obstacle + s);
+    }
+    double highest = 0;
+    for (int k = 0; k * Measured::interval <= spec.end + 1e-9; ++k) {
+        if (!flow.advance_to(k * Measured::interval)) break;
+        flow.read(places, thickness);
+        measured.time.push_back(k * Measured::interval);
+        for (std::size_t p = 0; p < stations; ++p) {
+            std::vector<double>& readings = measured.thickness[places[p]];
+            if (readings.size() < measured.time.size()) readings.push_back(thickness[p]);
+        }
+        for (std::size_t p = stations; p < places.size(); ++p) {
+            if (thickness[p] < Measured::arrived) continue;
+            highest = std::max(highest, bed.at(places[p]).y - bed.at(spec.obstacle).y);
+        }
+        if (obstacle == Obstacle::wall) highest = std::max(highest, flow.depth_at_wall());
+    }
+    if (obstacle != Obstacle::none) measured.run_up = highest;
+    measured.problem = flow.problem();
+    return measured;
+}
+
+constexpr int leaf_pairs = 10;
+
+class ParticleFlow : public Flow {
+  public:
+    ParticleFlow(const FlumeSpec& spec, const FlumeBed& bed, Obstacle obstacle, double spacing, const Setting& setting,
+                 const Watch& watch)
+        : spec_(spec), bed_(bed), leaves_(opening_gate(spec.shape.width, spec.gate_time, leaf_pairs)) {
+        const terrain::Terrain terrain = make_terrain(bed.length() - 1, spec.shape.width + 4, 0.25,
+                                                      [&](double x, double) { return bed.at(bed.along(x)).y; });
+        std::vector<terrain::Building> walls = make_slice(terrain, spec.shape.width, 5);
+        const Extent e = terrain.elevation().geometry.extent();
+        if (obstacle == Obstacle::wall) {
+            walls.push_back(make_wall(terrain, bed.at(spec.obstacle).x, e.y_min, e.x_max, e.y_max, 5));
+        }
+        first_leaf_ = walls.size();
+        const double gate = bed.at(0).x;
+        for (const GateLeaf& leaf : leaves_) {
+            walls.push_back(make_wall(terrain, gate, leaf.from, gate + 0.2, leaf.to, 5));
+        }
+        sim::Model model = sim::make_model(setting.material, setting.solver, spacing);
+        sim::Ground ground(terrain, walls, model.support_radius);
+        std::vector<double> below;
+        const auto points = fill(terrain, spacing, below);
+        sim::State start = state_at_rest(points);
+        start.previous_time_step = 1;  // s: multipliers are pressure over density, times its square
+        for (std::uint32_t i = 0; i < start.count; ++i) {
+            start.multiplier[i] = static_cast<float>(-model.gravity * below[i]);
+        }
+        find_pressures(model, ground, start);
+        // Its mass is scaled to the volume: a lattice misses that of its outline a little.
+        share_ = spec.shape.volume / static_cast<double>(points.size()) / (Measured::window * spec.shape.width);
+        trial_.emplace(run::RunStart{std::move(model), std::move(ground), std::move(start)}, watch, OnFault::note);
+    }
+
+    bool advance_to(double time) override {
+        for (; open_ < leaves_.size() && leaves_[open_].gone <= time; ++open_) {
+            if (!trial_->advance_to(leaves_[open_].gone)) return false;
+            trial_->remove_wall(first_leaf_ + open_);
+        }
+        return trial_->advance_to(time);
+    }
+    void read(const std::vector<double>& places, std::vector<double>& thickness) override {
+        thickness.assign(places.size(), 0.0);
+        const sim::State& state = trial_->state();
+        const double origin = trial_->ground().terrain.frame().origin.x;
+        for (std::uint32_t i = 0; i < state.count; ++i) {
+            const double s = bed_.along(state.position.x[i] + origin);
+            for (std::size_t p = 0; p < places.size(); ++p) {
+                if (std::abs(s - places[p]) < Measured::window / 2) thickness[p] += share_;
             }
         }
     }
-    return points;
-}
+    double depth_at_wall() override {
+        std::vector<double> thickness;
+        read({spec_.obstacle - Measured::window / 2}, thickness);
+        return thickness[0];
+    }
+    [[nodiscard]] std::string problem() const override { return trial_->problem(); }
+    [[nodiscard]] std::size_t particles() const { return trial_->state().seeded; }
 
-Measured measure(const FlumeSpec& spec, Obstacle obstacle, double spacing, const Setting& setting, const Watch& watch) {
-    const Bed bed(spec, obstacle);
-    const terrain::Terrain terrain =
-        make_terrain(bed.length() - 1, spec.width + 4, 0.25, [&](double x, double) { return bed.at(bed.along(x)).y; });
-    std::vector<terrain::Building> walls = make_slice(terrain, spec.width, 5);
-    const Extent e = terrain.elevation().geometry.extent();
-    if (obstacle == Obstacle::wall) {
-        walls.push_back(make_wall(terrain, bed.at(spec.obstacle).x, e.y_min, e.x_max, e.y_max, 5));
+  private:
+    /// Particles in the outline of the fill, none nearer to the gate than half a spacing; `below`: the surface, m.
+    std::vector<LocalPoint> fill(const terrain::Terrain& terrain, double spacing, std::vector<double>& below) const {
+        const double sine = std::sin(spec_.shape.slope), cosine = std::cos(spec_.shape.slope), gate = bed_.at(0).x;
+        const auto across = static_cast<int>(std::lround(spec_.shape.width / spacing));
+        const double pitch = spec_.shape.width / across;
+        const FlumeFill outline(spec_.shape, bed_);
+        std::vector<LocalPoint> points;
+        for (double s = -spacing / 2; s > outline.back(); s -= spacing) {
+            const PlanPoint ground = bed_.at(s);
+            for (double n = spacing / 2; n < outline.height(); n += spacing) {
+                const double x = ground.x + n * sine, z = ground.y + n * cosine;
+                const double top = outline.top(x);
+                if (x > gate - spacing / 2 || z > top) continue;
+                for (int j = 0; j < across; ++j) {
+                    points.push_back(terrain.frame().to_local({x, -spec_.shape.width / 2 + (j + 0.5) * pitch, z}));
+                    below.push_back(top - z);
+                }
+            }
+        }
+        return points;
     }
-    sim::Model model = sim::make_model(setting.material, setting.solver, spacing);
-    sim::Ground ground(terrain, walls, model.support_radius);
-    std::vector<double> above;
-    const auto points = fill_behind_gate(spec, bed, terrain, spacing, above);
-    sim::State start = state_at_rest(points);
-    start.previous_time_step = 1;  // s: multipliers are pressure over density, times its square
-    for (std::uint32_t i = 0; i < start.count; ++i) {
-        start.multiplier[i] = static_cast<float>(-model.gravity * std::cos(spec.slope) * above[i]);
-    }
-    find_pressures(model, ground, start);
-    // The lattice may be a little wider or narrower than its particles: its mass is scaled to the required volume.
-    const double mass_per_particle = spec.volume / static_cast<double>(points.size());
 
-    Measured measured;
-    measured.particles = points.size();
-    measured.arrivals.assign(spec.stations.size(), not_computed);
-    measured.thicknesses.assign(spec.samples.size(), not_computed);
-    measured.time.resize(spec.stations.size());
-    measured.depth.resize(spec.stations.size());
-    Trial trial({std::move(model), std::move(ground), std::move(start)}, watch, OnFault::note);
-    const sim::State& state = trial.state();
-    constexpr double window = 0.5, arrived = 0.02;
-    const double delay = spec.gate_time / 2;
-    const auto thickness_at = [&](double s) {
-        int inside = 0;
-        for (std::uint32_t i = 0; i < state.count; ++i) {
-            inside +=
-                std::abs(bed.along(state.position.x[i] + trial.ground().terrain.frame().origin.x) - s) < window / 2;
-        }
-        return inside * mass_per_particle / (window * spec.width);
-    };
-    double highest = 0;
-    const auto look = [&] {
-        const double foot = bed.at(spec.obstacle).y;
-        if (obstacle == Obstacle::wall) highest = std::max(highest, thickness_at(spec.obstacle - window / 2));
-        if (obstacle != Obstacle::ramp) return;
-        for (double s = spec.obstacle + window / 2; s < spec.obstacle + 8; s += window) {
-            if (thickness_at(s) >= arrived) highest = std::max(highest, bed.at(s).y - foot);
-        }
-    };
-    constexpr double interval = 0.05;
-    for (double t = 0; t <= spec.end + 1e-9; t += interval) {
-        if (!trial.advance_to(t - delay)) break;
-        for (std::size_t k = 0; k < spec.stations.size(); ++k) {
-            const double depth = thickness_at(spec.stations[k]);
-            if (depth >= arrived && std::isnan(measured.arrivals[k])) measured.arrivals[k] = t;
-            measured.time[k].push_back(t);
-            measured.depth[k].push_back(depth);
-        }
-        for (std::size_t k = 0; k < spec.samples.size(); ++k) {
-            if (std::abs(spec.samples[k][1] - t) < interval / 2)
-                measured.thicknesses[k] = thickness_at(spec.samples[k][0]);
-        }
-        look();
-    }
-    if (obstacle != Obstacle::none) measured.run_up = highest;
-    measured.problem = trial.problem();
-    return measured;
-}
+    const FlumeSpec& spec_;
+    const FlumeBed& bed_;
+    std::vector<GateLeaf> leaves_;
+    std::size_t first_leaf_ = 0, open_ = 0;
+    double share_ = 0;  ///< m of thickness that a particle adds
+    std::optional<Trial> trial_;
+};
 
-/// The same by the depth-averaged model on a strip of cells of so many m in plan.
-Measured measure_grid(const FlumeSpec& spec, Obstacle obstacle, double cell, const Setting& setting,
-                      const Watch& watch) {
-    const Bed bed(spec, obstacle);
-    Grid<double> ground({-bed.length() / 2, 0, cell, static_cast<int>(bed.length() / cell) - 1, 1});
-    const GridGeometry& g = ground.geometry;
-    const double deepest = std::sqrt(2 * spec.volume / spec.width * std::tan(spec.slope));
-    const double level = bed.at(0).y + deepest * std::cos(spec.slope);
-    std::vector<double> places;
-    Grid<float> depth(g);
-    depth::GroundValues values;
-    double sum = 0;
-    for (int column = 0; column < g.columns; ++column) {
-        const double x = g.centre(column, 0).x, s = bed.along(x), z = bed.at(s).y;
-        places.push_back(s);
-        const bool wall = obstacle == Obstacle::wall && s > spec.obstacle;
-        ground.at(column, 0) = wall ? z + 5 : z;
-        values.structure.push_back(wall ? 1.0F : 0.0F);
-        // Level behind a gate at right angles to the bed, which leans over what lies before its foot.
-        const double beyond = x - bed.at(0).x;
-        const double below_gate = beyond > 0 ? beyond / std::tan(spec.slope) : 0;
-        depth.at(column, 0) = static_cast<float>(std::max(0.0, level - std::max(z, bed.at(0).y + below_gate)));
-        sum += depth.at(column, 0) * cell * spec.width;
+/// The depth-averaged model on square cells in plan, with a row of walls on either side.
+class GridFlow : public Flow {
+  public:
+    GridFlow(const FlumeSpec& spec, const FlumeBed& bed, Obstacle obstacle, const Setting& setting, const Watch& watch)
+        : spec_(spec),
+          bed_(bed),
+          walled_(obstacle == Obstacle::wall),
+          material_(depth::material_of(setting.material)),
+          watch_(watch),
+          leaves_(opening_gate(spec.shape.width, spec.gate_time, leaf_pairs)),
+          inner_(static_cast<int>(std::lround(spec.shape.width / spec.grid_cell))),
+          geometry_{-bed.length() / 2, -(inner_ + 2) * spec.grid_cell / 2, spec.grid_cell,
+                    static_cast<int>(bed.length() / spec.grid_cell) - 1, inner_ + 2},
+          gate_(column_of(0)) {
+        solver_.emplace(build());
+        const FlumeFill outline(spec.shape, bed);
+        Grid<float> depth(geometry_);
+        double sum = 0;
+        for (int column = 0; column < gate_; ++column) {
+            const double x = geometry_.centre(column, 0).x;
+            const double h = std::max(0.0, outline.top(x) - bed.at(bed.along(x)).y);
+            for (int row = 1; row <= inner_; ++row) {
+                depth.at(column, row) = static_cast<float>(h);
+                sum += h * geometry_.cell * geometry_.cell;
+            }
+        }
+        for (float& h : depth.values) h *= static_cast<float>(spec.shape.volume / sum);
+        solver_->add(depth);
     }
-    for (float& h : depth.values) h *= static_cast<float>(spec.volume / sum);
-    depth::Solver solver(ground, depth::material_of(setting.material), values, depth::Edges::continued);
-    solver.add(depth);
 
-    Measured measured;
-    measured.arrivals.assign(spec.stations.size(), not_computed);
-    measured.thicknesses.assign(spec.samples.size(), not_computed);
-    measured.time.resize(spec.stations.size());
-    measured.depth.resize(spec.stations.size());
-    constexpr double window = 0.5, arrived = 0.02, interval = 0.05;
-    const auto column_of = [&](double s) { return static_cast<int>((bed.at(s).x - g.x_min) / cell); };
-    const auto thickness_at = [&](double s) {
-        const int first = column_of(s - window / 2), last = column_of(s + window / 2);
-        double volume = 0;
-        for (int column = first; column < last; ++column) volume += double{solver.depth_at(column, 0)} * cell;
-        return volume / (places[static_cast<std::size_t>(last)] - places[static_cast<std::size_t>(first)]);
-    };
-    double highest = 0;
-    for (double t = 0; t <= spec.end + 1e-9; t += interval) {
-        while (solver.time() < t - spec.gate_time / 2 - 1e-9) {
-            const Status stepped = solver.advance(t - spec.gate_time / 2 - solver.time());
-            if (!stepped) measured.problem = stepped.error().message;
-            if (!stepped || watch.stopped()) return measured;
+    bool advance_to(double time) override {
+        while (open_ < leaves_.size() && leaves_[open_].gone <= time) {
+            const double gone = leaves_[open_].gone;
+            if (!step_to(gone)) return false;
+            while (open_ < leaves_.size() && leaves_[open_].gone <= gone) ++open_;
+            take_over(build());
         }
-        for (std::size_t k = 0; k < spec.stations.size(); ++k) {
-            const double thickness = thickness_at(spec.stations[k]);
-            if (thickness >= arrived && std::isnan(measured.arrivals[k])) measured.arrivals[k] = t;
-            measured.time[k].push_back(t);
-            measured.depth[k].push_back(thickness);
-        }
-        for (std::size_t k = 0; k < spec.samples.size(); ++k) {
-            if (std::abs(spec.samples[k][1] - t) < interval / 2)
-                measured.thicknesses[k] = thickness_at(spec.samples[k][0]);
-        }
-        if (obstacle == Obstacle::wall) {
-            highest = std::max(highest, double{solver.depth_at(column_of(spec.obstacle) - 1, 0)});
-        }
-        for (double s = spec.obstacle + window / 2; obstacle == Obstacle::ramp && s < spec.obstacle + 8; s += window) {
-            if (thickness_at(s) >= arrived) highest = std::max(highest, bed.at(s).y - bed.at(spec.obstacle).y);
+        return step_to(time);
+    }
+    void read(const std::vector<double>& places, std::vector<double>& thickness) override {
+        thickness.clear();
+        for (const double s : places) {
+            const int first = column_of(s - Measured::window / 2), last = column_of(s + Measured::window / 2);
+            double depth = 0;
+            for (int column = first; column < last; ++column) depth += mean_depth(column);
+            const double along = bed_.along(geometry_.centre(last, 0).x) - bed_.along(geometry_.centre(first, 0).x);
+            thickness.push_back(depth * geometry_.cell / along);
         }
     }
-    if (obstacle != Obstacle::none) measured.run_up = highest;
-    return measured;
+    double depth_at_wall() override { return mean_depth(column_of(spec_.obstacle) - 1); }
+    [[nodiscard]] std::string problem() const override { return problem_; }
+
+  private:
+    [[nodiscard]] int column_of(double s) const {
+        return static_cast<int>((bed_.at(s).x - geometry_.x_min) / geometry_.cell);
+    }
+    [[nodiscard]] double mean_depth(int column) const {
+        double sum = 0;
+        for (int row = 1; row <= inner_; ++row) sum += double{solver_->depth_at(column, row)};
+        return sum / inner_;
+    }
+    bool step_to(double time) {
+        while (solver_->time() < time - begun_ - 1e-9) {
+            const Status stepped = solver_->advance(time - begun_ - solver_->time());
+            if (!stepped) problem_ = stepped.error().message;
+            if (!stepped || watch_.stopped()) return false;
+        }
+        return true;
+    }
+    /// Without debris, and without the leaves that are gone.
+    [[nodiscard]] depth::Solver build() const {
+        Grid<double> ground(geometry_);
+        depth::GroundValues values;
+        for (int row = 0; row < geometry_.rows; ++row) {
+            for (int column = 0; column < geometry_.columns; ++column) {
+                const PlanPoint centre = geometry_.centre(column, row);
+                const double s = bed_.along(centre.x);
+                const bool closed =
+                    column == gate_ &&
+                    std::any_of(leaves_.begin() + static_cast<std::ptrdiff_t>(open_), leaves_.end(),
+                                [&](const GateLeaf& leaf) { return centre.y >= leaf.from && centre.y < leaf.to; });
+                const bool built = row == 0 || row > inner_ || closed || (walled_ && s > spec_.obstacle);
+                ground.at(column, row) = bed_.at(s).y + (built ? 5 : 0);
+                values.structure.push_back(built ? 1.0F : 0.0F);
+            }
+        }
+        return {ground, material_, values};
+    }
+    /// The debris goes on over other ground.
+    void take_over(depth::Solver next) {
+        for (int row = 1; row <= inner_; ++row) {
+            for (int column = 0; column < geometry_.columns; ++column) {
+                const double depth = solver_->depth_at(column, row);
+                if (depth > 0) next.inject(column, row, depth, solver_->u_at(column, row), solver_->v_at(column, row));
+            }
+        }
+        begun_ += solver_->time();
+        solver_.emplace(std::move(next));
+    }
+
+    const FlumeSpec& spec_;
+    const FlumeBed& bed_;
+    bool walled_;
+    depth::Material material_;
+    const Watch& watch_;
+    std::vector<GateLeaf> leaves_;
+    std::size_t open_ = 0;  ///< leaves that are gone
+    int inner_;             ///< rows of the channel, after the first
+    GridGeometry geometry_;
+    int gate_;          ///< the column on which it stands
+    double begun_ = 0;  ///< s since the gate began to open, when the solver did
+    std::string problem_;
+    std::optional<depth::Solver> solver_;
+};
+
+Measured run(const FlumeSpec& spec, Obstacle obstacle, double spacing, const Setting& setting, const Watch& watch) {
+    const FlumeBed bed = bed_of(spec, obstacle);
+    if (spacing > 0) {
+        ParticleFlow flow(spec, bed, obstacle, spacing, setting, watch);
+        Measured measured = measure(flow, spec, bed, obstacle);
+        measured.particles = flow.particles();
+        return measured;
+    }
+    GridFlow flow(spec, bed, obstacle, setting, watch);
+    return measure(flow, spec, bed, obstacle);
 }
 
 Result<Outcome> compute(const FlumeSpec& spec, const Setting& setting, const Watch& watch) {
+    if (!FlumeFill(spec.shape, FlumeBed(spec.shape)).holds_volume()) {
+        return Error{
+            fmt::format("volume_m3 = {:g} is refused; gate_height_m, top_length_m and top_slope_deg hold more, "
+                        "or debris would begin behind the flume",
+                        spec.shape.volume)};
+    }
     Outcome outcome;
     Chart chart{"thickness", "Thickness at the stations", "time since the gate began to open (s)", "thickness (m)", {}};
     const double finest = *std::min_element(spec.spacings.begin(), spec.spacings.end());
-    constexpr double grid_cell = 0.1;
     std::vector<double> spacings = spec.spacings;
     spacings.push_back(0);  // the depth-averaged model
     for (const double spacing : spacings) {
@@ -265,23 +344,21 @@ Result<Outcome> compute(const FlumeSpec& spec, const Setting& setting, const Wat
                                      : obstacle == Obstacle::wall ? "wall"
                                                                   : "ramp";
             watch.say(kind + end);
-            const Measured m = spacing > 0 ? measure(spec, obstacle, spacing, setting, watch)
-                                           : measure_grid(spec, obstacle, grid_cell, setting, watch);
+            const Measured m = run(spec, obstacle, spacing, setting, watch);
             if (!m.problem.empty()) outcome.notes.push_back(kind + end + ": " + m.problem);
             if (obstacle != Obstacle::none) {
                 outcome.measurements.push_back({"run_up", kind + end, m.run_up, std::nullopt, coarse});
                 continue;
             }
             if (spacing > 0) outcome.notes.push_back(fmt::format("spacing {:g} m: {} particles", spacing, m.particles));
-            for (std::size_t k = 0; k < spec.stations.size(); ++k) {
-                const std::string station = fmt::format("{:g} m", spec.stations[k]);
-                outcome.measurements.push_back({"arrival_time", station + end, m.arrivals[k], std::nullopt, coarse});
-                chart.series.push_back({station + end, Series::Style::line, m.time[k], m.depth[k]});
+            for (const double station : spec.stations) {
+                const std::string name = fmt::format("{:g} m{}", station, end);
+                outcome.measurements.push_back({"arrival_time", name, m.arrival(station), std::nullopt, coarse});
+                chart.series.push_back({name, Series::Style::line, m.time, m.thickness.at(station)});
             }
-            for (std::size_t k = 0; k < spec.samples.size(); ++k) {
-                outcome.measurements.push_back(
-                    {"thickness", fmt::format("{:g} m at {:g} s{}", spec.samples[k][0], spec.samples[k][1], end),
-                     m.thicknesses[k], std::nullopt, coarse});
+            for (const auto& [station, time] : spec.samples) {
+                outcome.measurements.push_back({"thickness", fmt::format("{:g} m at {:g} s{}", station, time, end),
+                                                m.mean(station, time, spec.mean_time), std::nullopt, coarse});
             }
         }
     }
@@ -292,13 +369,19 @@ Result<Outcome> compute(const FlumeSpec& spec, const Setting& setting, const Wat
 Computation prepare(Parameters& parameters, const Setting& setting) {
     constexpr params::Range positive{.low = 0, .low_included = false};
     FlumeSpec spec;
-    spec.slope = parameters.number("slope_deg", {.low = 1, .high = 60}, 31) * radians_per_degree;
-    spec.pad_slope = parameters.number("pad_slope_deg", {.low = 0, .high = 60}, 2.4) * radians_per_degree;
-    spec.bend_start = parameters.number("bend_start_m", {.low = 1, .high = 90}, 74);
-    spec.bend_end = std::max(spec.bend_start + 1, parameters.number("bend_end_m", {.low = 2, .high = 100}, 84));
-    spec.width = parameters.number("width_m", positive, 2);
-    spec.volume = parameters.number("volume_m3", {.low = 0, .high = 50, .low_included = false}, 10);
+    spec.shape.slope = parameters.number("slope_deg", {.low = 1, .high = 60}, 31) * radians_per_degree;
+    spec.shape.pad_slope = parameters.number("pad_slope_deg", {.low = 0, .high = 60}, 2.4) * radians_per_degree;
+    spec.shape.bend_start = parameters.number("bend_start_m", {.low = 1, .high = 90}, 74);
+    spec.shape.bend_end =
+        std::max(spec.shape.bend_start + 1, parameters.number("bend_end_m", {.low = 2, .high = 100}, 84));
+    spec.shape.width = parameters.number("width_m", positive, 2);
+    spec.shape.volume = parameters.number("volume_m3", {.low = 0, .high = 50, .low_included = false}, 10);
+    spec.shape.gate_height = parameters.number("gate_height_m", {.low = 0.1, .high = 5}, 1.9);
+    spec.shape.top_length = parameters.number("top_length_m", {.low = 0.1, .high = 8}, 3.3);
+    spec.shape.top_slope = parameters.number("top_slope_deg", {.low = 0, .high = 60}, 17) * radians_per_degree;
     spec.gate_time = parameters.number("gate_opening_s", {.low = 0}, 0.85);
+    spec.mean_time = parameters.number("mean_time_s", positive, 0.5);
+    spec.grid_cell = parameters.number("grid_cell_m", positive, 0.1);
     spec.spacings = parameters.numbers("spacings_m", positive, {0.08});
     spec.stations = parameters.numbers("stations_m", {.low = 0, .high = 110}, {32, 66});
     spec.samples = parameters.pairs("samples_m_s", {.low = 0, .high = 200}, false);

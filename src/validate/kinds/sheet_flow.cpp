@@ -38,9 +38,10 @@ struct Measured {
 /// The law's velocity at a height above the ground.
 double law_velocity(const SheetSpec& spec, const SheetFlow& sheet, const sim::Model& model,
                     const params::MaterialSpec& material, double height) {
-    if (spec.law == "voellmy") {
+    if (spec.law == "drag") {
         const double share = sheet.thickness / material.turbulent_friction_thickness.value_or(sheet.thickness);
-        return sheet.voellmy(model.friction_coefficient, material.turbulent_friction.value_or(0) * std::cbrt(share));
+        return sheet.with_drag(model.friction_coefficient, material.turbulent_friction.value_or(0) * std::cbrt(share),
+                               model.laminar_viscosity);
     }
     if (spec.law == "bingham") {
         return sheet.bingham(height, model.cohesion / model.rest_density, model.kinematic_viscosity);
@@ -180,7 +181,7 @@ Result<Outcome> compute(const SheetSpec& spec, const Setting& setting, const Wat
 Computation prepare(Parameters& parameters, const Setting& setting) {
     constexpr params::Range positive{.low = 0, .low_included = false};
     SheetSpec spec;
-    spec.law = parameters.choice("law", {"voellmy", "bingham", "bagnold"}, "voellmy");
+    spec.law = parameters.choice("law", {"drag", "bingham", "bagnold"}, "drag");
     spec.slopes = parameters.numbers("slopes_deg", {.low = 0, .high = 60, .low_included = false}, {20});
     for (double& slope : spec.slopes) slope *= radians_per_degree;
     spec.start_shares = parameters.numbers("start_shares", {.low = 0, .high = 10}, {1});

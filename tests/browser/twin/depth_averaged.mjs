@@ -43,7 +43,7 @@ export async function testDepthAveraged(run) {
     first = curve(await until(() => velocity(page), (t) => curve(t) !== undefined, "the curve"));
     const front = made.front.front_velocity_mps.filter((v) => v !== null);
     assert.ok(Math.abs(Number(first) / Math.max(...front) - 1) < 0.01, `${first} m/s in the chart, ${Math.max(...front)} from the server`);
-    assert.match(await velocity(page), /Front from .*Depth-averaged|Depth-averaged from .*Front from/, "beside that of the particles");
+    await until(() => velocity(page), (t) => /Front from .*Depth-averaged|Depth-averaged from .*Front from/.test(t), "the curve of the particles beside it");
     const table = page.locator("table.both-models");
     await table.locator("tr", { hasText: "Affected area" }).waitFor();
     const heads = await table.locator("thead th").allTextContents();

@@ -25,24 +25,24 @@ export async function testScenarios(run) {
   const seriesOfA = JSON.stringify(await server.ask("scenarios/A/series"));
 
   await run.check("an edit of a finished run asks once: a new scenario from the start, listed with what sets it apart, status and time", async () => {
-    await setFriction(0.2);
+    await setFriction(0.3);
     const dialog = page.locator("dialog[open]");
     await dialog.waitFor();
     await page.keyboard.press("Escape");
     await until(() => friction.inputValue(), (v) => Number(v) === first, "the field goes back");
     assert.equal((await setup("A")).parameters[key], first);
-    await setFriction(0.2);
+    await setFriction(0.3);
     await dialog.waitFor();
     await run.shot(page, "37-ask");
     assert.equal(await page.evaluate(() => document.activeElement.textContent), "New scenario from the start");
     await page.keyboard.press("Enter");
     await row("B").waitFor();
-    await until(() => row("B").textContent(), (t) => /Paused, 0\.0 s.*friction 0\.2/.test(t), "B in the list");
+    await until(() => row("B").textContent(), (t) => /Paused, 0\.0 s.*friction 0\.3/.test(t), "B in the list");
     assert.match(await row("A").textContent(), /End reached, 4\.0 s/);
     assert.equal((await setup("A")).parameters[key], first);
     assert.deepEqual((await setup("A")).changes, []);
     assert.equal(await page.locator(".pane").count(), 2);
-    await until(() => page.locator(".pane-name").allTextContents(), (t) => t[0] === `A, friction ${first}` && t[1] === "B, friction 0.2", "panes with their parameters");
+    await until(() => page.locator(".pane-name").allTextContents(), (t) => t[0] === `A, friction ${first}` && t[1] === "B, friction 0.3", "panes with their parameters");
     // B has not begun: it is edited without a new scenario.
     await setFriction(0.25);
     await until(() => setup("B"), (s) => s.parameters[key] === 0.25, "an edit of B");

@@ -141,7 +141,7 @@ export async function testStart(run) {
     await page.locator(".new-job >> text=no field observations").waitFor();
     assert.ok(await page.isDisabled(".new-job .primary"), "there is nothing to calibrate against");
     await page.selectOption("[aria-label=Scene]", "sham_tseng");
-    await page.locator(".new-job >> text=/Observed: Front velocity/").waitFor();
+    await page.locator(".new-job >> text=/Observed: Debris speed/").waitFor();
     await page.click(".new-job .primary");
     await page.locator("[data-job=calibration-1][data-state=running]").waitFor();
     await page.click("text=New job");

@@ -52,14 +52,14 @@ export function frontCharts(twin: Twin, below: HTMLElement): HTMLElement {
       timeCurves.push({ label: `Arrival${suffix}`, unit: "s", colour: colours[i] });
     }
     if (observed.length > 0) {
-      tables.push({ x: observed.map((o) => o.chainage_m), y: observed.map((o) => o.front_velocity_mps) });
+      tables.push({ x: observed.map((o) => o.chainage_m), y: observed.map((o) => o.observed_mps) });
       curves.push({ label: "Observed", unit: "m/s", colour: observationColour, marksOnly: true });
     }
     velocity.update(tables.length > 0 ? joined(tables) : [[]], curves);
     arrival.update(times.length > 0 ? joined(times) : [[]], timeCurves);
   });
   const list = h("ul", { class: "observations" }, ...observed.map((o) =>
-    h("li", {}, `${o.name}: ${o.front_velocity_mps} m/s at ${o.chainage_m} m (${o.source})`)));
+    h("li", {}, `${o.name}: ${o.quantity === "debris_speed" ? "debris" : "front"} ${o.observed_mps} m/s at ${o.chainage_m} m (${o.source})`)));
   const note = twin.scene.flow_path ? null : h("p", { class: "hint" }, "This scene has no flow path: there is no chainage to plot against.");
   return h("div", {}, note, velocity.element, observed.length > 0 ? h("div", { class: "hint" }, "Observations", list) : null, arrival.element, below);
 }

@@ -54,7 +54,7 @@ export function runCard(twin: Twin): HTMLElement {
     if (judged && now !== shown) {
       shown = now;
       verdict.classList.toggle("bad", !judged.within_limits);
-      judgement.textContent = judged.within_limits ? "Run within its limits" : `Run ${judged.text}`;
+      judgement.textContent = judged.text;
       checks.replaceChildren(...judged.checks.map((check) => h("li", { "data-state": check.state }, h("b", {}, `${check.name}. `), check.text)));
     }
   });

@@ -24,7 +24,7 @@ export function zoneFields(scene: Given, onset: (change: ZoneSet) => void): Zone
     return field.element;
   };
   const stem = [make("stem_diameter_m"), make("stem_drag_coefficient")];
-  const element = h("div", { class: "options" }, make("friction_coefficient"), make("turbulent_friction_mps2"), make("cohesion_Pa"), make("stem_density_pm2", stem));
+  const element = h("div", { class: "options" }, make("friction_coefficient"), make("turbulent_friction_mps2"), make("laminar_viscosity_m2ps"), make("cohesion_Pa"), make("stem_density_pm2", stem));
   return {
     element,
     show: (zone) => made.forEach((field, key) => field.show(zone[key])),

@@ -30,7 +30,7 @@ export interface Parameter {
   range: { low: number | null; high: number | null; low_included: boolean; high_included: boolean };
   help: string;
 }
-export interface Observation { name: string; chainage_m: number; front_velocity_mps: number; source: string }
+export interface Observation { name: string; chainage_m: number; quantity: "front_velocity" | "debris_speed"; observed_mps: number; source: string }
 /** chainage_m: null: given as a place. */
 export interface Gauge { name: string; x_m: number; y_m: number; chainage_m: number | null }
 export interface FlowPath { points: Place[]; chainage_m: number[]; corridor_width_m: number; traced: boolean }

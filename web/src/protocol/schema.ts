@@ -86,6 +86,8 @@ export interface MaterialValues {
   viscosity: number;
   /** Voellmy's xi: flow of thickness h is slowed by g v2 / (xi h) in addition to Coulomb friction. null: none. */
   turbulent_friction_mps2: number | null;
+  /** Laminar drag: flow of thickness h is slowed by 3 nu v / h2 over its whole depth, beside Coulomb and turbulent friction. nu is the kinematic viscosity, dynamic viscosity over density: the viscous term of FLO-2D and HEC-RAS with K = 24. null: none. */
+  laminar_viscosity_m2ps: number | null;
   /** Shear strength that needs no pressure, on the ground and inside: the yield stress of a mud where friction is 0. */
   cohesion_Pa: number;
   /** r_u, pore pressure over the total normal stress when debris starts: friction on ground, buildings and inside is 1 - r_u of what it is in dry debris. */
@@ -100,6 +102,8 @@ export interface ZoneValues {
   friction_coefficient: number | null;
   /** Voellmy's xi on this ground; lower is rougher. null: as in [material]. */
   turbulent_friction_mps2: number | null;
+  /** Kinematic viscosity of laminar drag on this ground. null: as in [material]. */
+  laminar_viscosity_m2ps: number | null;
   /** Shear strength without pressure between debris and this ground. null: as in [material]. */
   cohesion_Pa: number | null;
   /** Stems of a forest per square metre that stand the flow; each drags on it as a cylinder. */
@@ -206,6 +210,10 @@ export const fields = {
     turbulent_friction_mps2: {
       label: "Voellmy's ξ", unit: "m/s2", factor: 1, low: 1, high: 1000000, sliderLow: 100, sliderHigh: 2100, first: 500,
       tick: "Turbulent friction", tickHelp: "A separate Voellmy turbulent friction; unticked: as in [material]", help: "Voellmy's xi on this ground; lower is rougher.",
+    },
+    laminar_viscosity_m2ps: {
+      label: "Viscosity", unit: "m2/s", factor: 1, low: 0, high: 1000000, sliderLow: 0, sliderHigh: 0.2, first: 0.04,
+      tick: "Laminar drag", tickHelp: "A separate viscosity of laminar drag; unticked: as in [material]", help: "Kinematic viscosity of laminar drag on this ground.",
     },
     cohesion_Pa: {
       label: "Shear strength", unit: "kPa", factor: 0.001, low: 0, high: 10000, sliderLow: 0, sliderHigh: 10, first: 1,

@@ -25,6 +25,7 @@ export function zoneNote(zone: ZoneSet): string {
   const perHectare = shownAs(stem_density_pm2, zone.stem_density_pm2 ?? 0);
   if (perHectare > 0) said.push(`forest ${tick(perHectare)}/ha`);
   if (typeof zone.friction_coefficient === "number") said.push(`friction ${tick(zone.friction_coefficient)}`);
+  if (typeof zone.laminar_viscosity_m2ps === "number") said.push(`ν ${tick(zone.laminar_viscosity_m2ps)}`);
   if (typeof zone.turbulent_friction_mps2 === "number") said.push(`ξ ${tick(zone.turbulent_friction_mps2)}`);
   if (typeof zone.cohesion_Pa === "number") said.push(`cohesion ${tick(shownAs(cohesion_Pa, zone.cohesion_Pa))}\u202fkPa`);
   if (said.length > 2) return `${said[0]}, …`;

@@ -1,0 +1,270 @@
+// Cells after a stage of the depth-averaged step, from what crosses their faces and what resists. Included once per
+// instruction set.
+#if defined(TALUS_DEPTH_UPDATE_INL) == defined(HWY_TARGET_TOGGLE)
+#ifdef TALUS_DEPTH_UPDATE_INL
+#undef TALUS_DEPTH_UPDATE_INL
+#else
+#define TALUS_DEPTH_UPDATE_INL
+#endif
+
+#include <hwy/highway.h>
+
+#include "depth/flight.hpp"
+#include "depth/formulas.hpp"
+#include "depth/rows-inl.hpp"
+#include "depth/stages.hpp"
+
+HWY_BEFORE_NAMESPACE();
+namespace talus::depth::HWY_NAMESPACE {
+
+/// Share of its kinetic energy by which debris may exceed what it has been given: the model's pressure on steep ground
+/// and the scheme both miss by that much where nothing is wrong.
+constexpr float energy_error = 0.02F;
+/// Most that is kept spare, over kinetic energy and that of pressure: what a shock took does not come back.
+constexpr float largest_spare = 0.5F;
+
+/// Pore pressure of debris of `depth` after a stage, with `content` of it times depth: rounding must not take it beyond
+/// the values it is a mean of.
+HWY_INLINE L mixed_pore_pressure(const L& content, const L& depth, const L& own, const L& low, const L& high) {
+    const L mean = smaller(larger(content / larger(depth, L(1e-12F)), low), high);
+    return select(depth > L(1e-12F), mean, own);
+}
+
+/// Pore pressure of a cell after this stage alone.
+HWY_INLINE L pore_pressure_after(const StageData& data, const Scratch& scratch, int r, std::ptrdiff_t i, int j,
+                                 const L& depth, const L& new_depth) {
+    const Row& row = scratch.rows[static_cast<std::size_t>(r & 1)];
+    const Numbers &x = scratch.x.pore_pressure, &south = scratch.y[static_cast<std::size_t>(r & 1)].pore_pressure;
+    const Numbers& north = scratch.y[static_cast<std::size_t>((r + 1) & 1)].pore_pressure;
+    const L dt(data.time_step), per_cell = dt * L(data.inverse_cell), own = load(row.pore_pressure, j);
+    L content = depth * own - per_cell * (load(x, j) - load(x, j - 1) + (load(north, j) - load(south, j)));
+    L low(1e30F), high(0);
+    const auto bound_by = [&](const L& brings, const L& pore_pressure) HWY_ATTR {
+        low = smaller(low, select(brings > L(0), pore_pressure, low));
+        high = larger(high, select(brings > L(0), pore_pressure, high));
+    };
+    for (const std::ptrdiff_t beside : {std::ptrdiff_t{0}, std::ptrdiff_t{-1}, std::ptrdiff_t{1},
+                                        -std::ptrdiff_t{data.stride}, std::ptrdiff_t{data.stride}}) {
+        bound_by(L::load(data.from.depth + i + beside), L::load(data.from.pore_pressure + i + beside));
+    }
+    if (data.inflow.depth != nullptr) {
+        const L comes = L::load(data.inflow.depth + i), fresh(data.fresh_pore_pressure);
+        content = content + dt * comes * fresh;
+        bound_by(comes, fresh);
+    }
+    return mixed_pore_pressure(content, new_depth, own, low, high);
+}
+
+/// What goes with the mass, per mass, after this stage alone.
+HWY_INLINE L carried_after(const Numbers& own, const Numbers& x, const Numbers& south, const Numbers& north,
+                           const L& depth, const L& new_depth, const L& per_cell, int j) {
+    const L out = load(x, j) - load(x, j - 1) + (load(north, j) - load(south, j));
+    return (depth * load(own, j) - per_cell * out) / larger(new_depth, L(dry_depth));
+}
+
+/// Updates lane_count cells at index i, entry j of the row.
+HWY_INLINE void update(const StageData& data, Scratch& scratch, int r, std::ptrdiff_t i, int j, Fastest& fastest) {
+    const Row& row = scratch.rows[static_cast<std::size_t>(r & 1)];
+    const Faces &x = scratch.x, &south = scratch.y[static_cast<std::size_t>(r & 1)];
+    const Faces& north = scratch.y[static_cast<std::size_t>((r + 1) & 1)];
+    if (data.passes_east != nullptr) {
+        load(x.mass, j).store(data.passes_east + i);
+        load(north.mass, j).store(data.passes_north + i);
+    }
+    const L zero(0), half(0.5F), one(1), gravity(data.gravity), inverse_cell(data.inverse_cell);
+    const L dt(data.time_step), per_cell = dt * inverse_cell;
+    const L depth = L::load(data.from.depth + i), u = L::load(data.from.u + i), v = L::load(data.from.v + i);
+    const L bed_x = load(row.bed_x, j), bed_y = load(row.bed_y, j);
+    const L square_stretch = one + bed_x * bed_x + bed_y * bed_y, stretch = sqrt(square_stretch);
+    const auto square = [&](const L& by_x, const L& by_y) HWY_ATTR {
+        const L upward = bed_x * by_x + bed_y * by_y;
+        return by_x * by_x + by_y * by_y + upward * upward;
+    };
+
+    const auto force = [&](const AxisRow& axis, const L& after, const L& before) HWY_ATTR {
+        return (before - after - (load(axis.before.depth, j) + load(axis.after.depth, j)) * half * load(axis.rise, j)) *
+               inverse_cell;
+    };
+    const L force_x = force(row.x, load(x.pressure_before, j), load(x.pressure_after, j - 1));
+    const L force_y = force(row.y, load(north.pressure_before, j), load(south.pressure_after, j));
+    // The gravity correction of Xia & Liang (2018): on a sheet cos^2 of the slope, on a lake 1.
+    const L tilt = larger(zero, (bed_x * load(row.x.rise, j) + bed_y * load(row.y.rise, j)) * inverse_cell);
+    const L free = one - load(row.at_rest, j);
+    const L pull = free * gravity / (one + tilt);
+    const L press =
+        (load(x.press, j - 1) + load(x.press, j) + load(south.press, j) + load(north.press, j)) * inverse_cell;
+    const L curvature = free * press / square_stretch;
+
+    L new_depth = larger(
+        zero, depth - per_cell * (load(x.mass, j) - load(x.mass, j - 1) + (load(north.mass, j) - load(south.mass, j))));
+    const L out_x = load(x.normal, j) - load(x.normal, j - 1) + (load(north.across, j) - load(south.across, j));
+    const L out_y = load(x.across, j) - load(x.across, j - 1) + (load(north.normal, j) - load(south.normal, j));
+    const bool flies = data.from.height != nullptr;
+    const L hold = gravity * depth / (one + tilt) + curvature;  // below zero the ground would have to hold the debris
+    const L new_height = flies ? larger(zero, carried_after(row.height, x.height, south.height, north.height, depth,
+                                                            new_depth, per_cell, j))
+                               : zero;
+    const L in_air = flies ? opaque(select(smaller(hold, zero - new_height) < zero, one, zero)) : zero;
+    L push_x = pull * force_x - curvature * bed_x, push_y = pull * force_y - curvature * bed_y;
+    if (flies) {
+        push_x = push_x * (one - in_air);
+        push_y = push_y * (one - in_air);
+    }
+    L m_x = depth * u - per_cell * out_x + dt * push_x;
+    L m_y = depth * v - per_cell * out_y + dt * push_y;
+    L bound = zero;
+    // What debris may move with: its kinetic energy and what is spare, and what comes through the faces and falls there
+    // from the bed of one cell to that of the other, over density and area. What depth alone has (lift h^2 / 2) is left
+    // out, since single precision would lose the rest in it.
+    const L lift = load(row.lift, j), head = lift * depth, bed = L::load(data.bed + i);
+    const L square_speed = flies ? load(row.square, j) : square(u, v);
+    const std::ptrdiff_t up = data.stride;
+    const auto out = [&](const Faces& faces, int at, std::ptrdiff_t beside) HWY_ATTR {
+        return load(faces.energy, at) +
+               load(faces.mass, at) * (half * gravity * (L::load(data.bed + (i + beside)) - bed) - head);
+    };
+    L energy = depth * (half * square_speed + load(row.spare, j)) -
+               per_cell * (out(x, j, 1) - out(x, j - 1, -1) + (out(north, j, up) - out(south, j, -up)));
+    if (data.inflow.depth != nullptr) {
+        const L comes = L::load(data.inflow.depth + i);
+        const L comes_x = L::load(data.inflow.momentum_x + i), comes_y = L::load(data.inflow.momentum_y + i);
+        new_depth = new_depth + dt * comes;
+        m_x = m_x + dt * comes_x;
+        m_y = m_y + dt * comes_y;
+        bound = sqrt(comes_x * comes_x + comes_y * comes_y) / larger(comes, L(1e-12F));
+        // It enters at the upper edge of the cell, with the pressure of its depth.
+        const L fall = half * gravity * (magnitude(bed_x) + magnitude(bed_y)) / inverse_cell;
+        energy = energy + dt * (half * square(comes_x, comes_y) / larger(comes, L(1e-12F)) +
+                                comes * (fall + lift * (new_depth - depth)));
+    }
+
+    const bool carries = data.from.pore_pressure != nullptr;
+    L pore_pressure = carries ? pore_pressure_after(data, scratch, r, i, j, depth, new_depth) : zero;
+
+    L normal_force = larger(zero, hold), lands = zero;
+    Flight<L> flight{zero, zero};
+    if (flies) {
+        const L inverse_depth = one / larger(new_depth, L(dry_depth));
+        const L rises = carried_after(row.upward, x.upward, south.upward, north.upward, depth, new_depth, per_cell, j);
+        flight = fly(new_height, rises, (bed_x * m_x + bed_y * m_y) * inverse_depth, gravity, dt);
+        lands = in_air * opaque(select(flight.height > zero, zero, one));
+        // What is normal to the ground is lost there, by an impulse to which friction belongs as to any other.
+        const L impulse = lands * new_depth * larger(zero, zero - flight.climb) / square_stretch;
+        m_x = m_x - impulse * bed_x;
+        m_y = m_y - impulse * bed_y;
+        energy = energy - half * impulse * magnitude(flight.climb);
+        bound = bound + impulse * inverse_depth * (magnitude(bed_x) + magnitude(bed_y));
+        normal_force = select(in_air > zero, impulse / dt, normal_force);
+        const L stays = in_air - lands;
+        flight = {stays * flight.height, stays * flight.climb};
+    }
+    const L m_up = bed_x * m_x + bed_y * m_y, momentum = sqrt(m_x * m_x + m_y * m_y + m_up * m_up);
+    L left = resisted(resistance_at(data, i, new_depth, stretch, pore_pressure), gravity, momentum, new_depth,
+                      normal_force, stretch, dt);
+    if (flies) left = select(in_air - lands > zero, momentum, left);
+    energy = energy - (momentum - left) * sqrt(square_speed);
+    const L moves = smaller(new_depth - L(dry_depth), left);
+    const L to_speed =
+        select(moves > zero, left / (larger(momentum, L(1e-30F)) * larger(new_depth, L(dry_depth))), zero);
+    L new_u = m_x * to_speed, new_v = m_y * to_speed;
+    // Emptied cells keep no momentum without mass: no faster than the fastest around, its front and free fall.
+    bound = larger(bound, load(scratch.speed[static_cast<std::size_t>(r % 3)], j));
+    bound = larger(bound, larger(load(scratch.speed[static_cast<std::size_t>(r % 3)], j - 1),
+                                 load(scratch.speed[static_cast<std::size_t>(r % 3)], j + 1)));
+    bound = larger(bound, larger(load(scratch.speed[static_cast<std::size_t>((r + 1) % 3)], j),
+                                 load(scratch.speed[static_cast<std::size_t>((r + 2) % 3)], j)));
+    bound = bound + gravity * dt;
+    const L speed = sqrt(new_u * new_u + new_v * new_v);
+    const L slower = select(speed > bound, bound / larger(speed, L(1e-30F)), one);
+    new_u = new_u * slower;
+    new_v = new_v * slower;
+
+    L to_depth = new_depth;
+    const L deeper = new_depth - depth;
+    const L on_its_way = opaque(select(moves > zero, one, zero));
+    if (flies) flight = {flight.height * on_its_way, flight.climb * on_its_way};
+    const auto square_of = [&](const L& by_x, const L& by_y, const Flight<L>& of) HWY_ATTR {
+        return flies ? flight_square(by_x, by_y, bed_x * by_x + bed_y * by_y, of, gravity) : square(by_x, by_y);
+    };
+    L spare = energy - half * (lift * deeper * deeper + new_depth * square_of(new_u, new_v, flight));
+    const auto difference = [](const L& a, const L& b) HWY_ATTR { return magnitude(a - b); };
+    L change = load(scratch.change, j) + difference(new_depth, depth) + difference(new_u, u) + difference(new_v, v);
+    if (data.second) {
+        const L old_depth = L::load(data.to.depth + i);
+        const L old_u = L::load(data.to.u + i), old_v = L::load(data.to.v + i);
+        to_depth = half * (old_depth + new_depth);
+        const L scale =
+            select(smaller(moves, to_depth - L(dry_depth)) > zero, half / larger(to_depth, L(dry_depth)), zero);
+        new_u = (old_depth * old_u + new_depth * new_u) * scale;
+        new_v = (old_depth * old_v + new_depth * new_v) * scale;
+        Flight<L> old_flight{zero, zero};
+        L lost = zero;
+        if (flies) {
+            old_flight = {L::load(data.to.height + i), L::load(data.to.climb + i)};
+            const L aloft = opaque(select(flight.height > zero, one, zero));
+            const L height = (old_depth * old_flight.height + new_depth * flight.height) * scale;
+            const L climb = (old_depth * old_flight.climb + new_depth * flight.climb) * scale;
+            // On the ground at the end of the step: half of the first stage may not be.
+            const L strikes = (one - aloft) * climb / square_stretch;
+            new_u = new_u + strikes * bed_x;
+            new_v = new_v + strikes * bed_y;
+            lost = to_depth * strikes * climb;
+            flight = {aloft * height, aloft * climb};
+            change = change + difference(flight.height, old_flight.height) + difference(flight.climb, old_flight.climb);
+        }
+        // No faster than that allows. All terms are twice those of a stage, which count half.
+        const L old_spare = L::load(data.to.spare + i), rise = new_depth - old_depth;
+        const L allowed = old_depth * (half * square_of(old_u, old_v, old_flight) + old_spare) + energy +
+                          lift * (L(0.25F) * rise * rise - half * deeper * deeper) - lost;
+        // Nor faster than from the highest energy line of all.
+        L wanted = to_depth * square_of(new_u, new_v, flight);
+        const L fall = L(data.highest_line) - bed;
+        const L most = larger(zero, smaller(allowed * L(1 / (1 - energy_error)), L(2) * gravity * to_depth * fall));
+        if (flies) {
+            // Nor higher: where debris is held up at a fall, the ground seems to sink below it.
+            const L higher = larger(zero, wanted - most) / (L(2) * gravity * larger(to_depth, L(dry_depth)));
+            const L height = larger(zero, flight.height - higher);
+            const L aloft = opaque(select(height > zero, one, zero));
+            flight = {height, aloft * flight.climb};
+            wanted = to_depth * square_of(new_u, new_v, flight);
+        }
+        const L share = select(wanted > most, sqrt(most / larger(wanted, L(1e-30F))), one);
+        new_u = new_u * share;
+        new_v = new_v * share;
+        const L taken = smaller(wanted, most);
+        spare = half * smaller(allowed - taken, L(largest_spare) * (taken + lift * to_depth * to_depth));
+        change = change + difference(to_depth, old_depth) + difference(new_u, old_u) + difference(new_v, old_v);
+        const L signal = select(to_depth <= L(dry_depth), zero,
+                                magnitude(new_u) + magnitude(new_v) + L(2) * sqrt(gravity * to_depth));
+        fastest.largest = larger(fastest.largest, signal);
+        fastest.unknown = fastest.unknown + signal * zero;
+    }
+    spare = select(to_depth <= L(dry_depth), zero, spare / larger(to_depth, L(dry_depth)));
+    spare.store(data.to.spare + i);
+    if (flies) {
+        change = change + flight.height + magnitude(flight.climb);
+        flight.height.store(data.to.height + i);
+        flight.climb.store(data.to.climb + i);
+    }
+    if (carries) {
+        change = change + difference(pore_pressure, load(row.pore_pressure, j));
+        if (data.second) {
+            const L old_depth = L::load(data.to.depth + i), before = L::load(data.to.pore_pressure + i);
+            const L old = select(old_depth > zero, before, pore_pressure);
+            const L content = half * (old_depth * old + new_depth * pore_pressure);
+            pore_pressure = mixed_pore_pressure(content, to_depth, pore_pressure, smaller(old, pore_pressure),
+                                                larger(old, pore_pressure));
+            change = change + difference(pore_pressure, before);
+        }
+        pore_pressure.store(data.to.pore_pressure + i);
+    }
+    store(change, scratch.change, j);
+    to_depth.store(data.to.depth + i);
+    new_u.store(data.to.u + i);
+    new_v.store(data.to.v + i);
+}
+
+}  // namespace talus::depth::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#endif
