@@ -71,11 +71,13 @@ Simulation::Simulation(Model model, Ground ground, State state, InflowFeeder inf
     measure_energy_and_speed();
 }
 
+std::unique_lock<std::mutex> Simulation::lock_device() const {
+    return device_ != nullptr ? std::unique_lock(*device_lock_) : std::unique_lock<std::mutex>();
+}
+
 /// Copies the particles back if a step has moved them on a device.
 void Simulation::fetch() const {
-    if (device_ == nullptr) return;
-    static std::mutex copying;  // several threads may read a run between two of its steps
-    const std::lock_guard lock(copying);
+    const auto lock = lock_device();
     if (std::exchange(device_is_newer_, false)) device_->fetch(state_);
 }
 
@@ -109,6 +111,7 @@ const State& Simulation::kept() {
 }
 
 Motion Simulation::motion(double deposited_speed) const {
+    const auto lock = lock_device();
     if (device_is_newer_) return device_->count_motion(state_, MotionCount(deposited_speed));
     return motion_of(state_, deposited_speed);
 }
@@ -118,6 +121,7 @@ std::string Simulation::instruction_set() const {
 }
 
 double Simulation::mean_neighbours() const {
+    const auto lock = lock_device();
     if (device_ != nullptr) return device_->mean_neighbours();
     double pairs = 0;
     for (std::uint32_t i = 0; i < state_.count; ++i) pairs += processor_->neighbours().count_of(i);
@@ -125,10 +129,12 @@ double Simulation::mean_neighbours() const {
 }
 
 device::Traffic Simulation::device_traffic() const {
+    const auto lock = lock_device();
     return device_ != nullptr ? device_->traffic() : device::Traffic{};
 }
 
 std::size_t Simulation::device_bytes() const {
+    const auto lock = lock_device();
     return device_ != nullptr ? device_->bytes() : 0;
 }
 

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <mutex>
 #include <optional>
 #include <string>
 
@@ -43,8 +44,8 @@ class Simulation {
 
     [[nodiscard]] const Model& model() const { return model_; }
     [[nodiscard]] const Ground& ground() const { return ground_; }
-    /// After steps on a device its particles are copied back first. Several threads may do so between two steps. Throws
-    /// a DeviceFailure if that fails.
+    /// After steps on a device its particles are copied back first. Throws a DeviceFailure if that fails. Between two
+    /// steps several threads may call this and all that is const below: one at a time uses the device.
     [[nodiscard]] const State& state() const {
         fetch();
         return state_;
@@ -75,6 +76,8 @@ class Simulation {
   private:
     struct OwnStages;
 
+    /// Nothing for the processor.
+    [[nodiscard]] std::unique_lock<std::mutex> lock_device() const;
     void follow_change();
     void fetch() const;
     void hand_over();
@@ -96,8 +99,9 @@ class Simulation {
     std::uint32_t expected_ = 0;  // total number of particles from inflows
     std::uint32_t capacity_ = 0;  // particles that the backend has memory for
     params::BackendChoice backend_;
-    std::optional<cpu::Backend> processor_;    // replaced when there are more
-    std::unique_ptr<device::Backend> device_;  // in place of the processor
+    std::optional<cpu::Backend> processor_;                                     // replaced when there are more
+    std::unique_ptr<device::Backend> device_;                                   // in place of the processor
+    std::unique_ptr<std::mutex> device_lock_ = std::make_unique<std::mutex>();  // can be moved with this
     Entrainment entrainment_;
     StageTimes times_;
     double highest_energy_head_;
