@@ -52,7 +52,7 @@ bool holds(const List& list, const std::string& name) {
 std::vector<fs::path> installed_tables() {
     std::vector<fs::path> tables;
     const CPLStringList proj(OSRGetPROJSearchPaths());
-    for (int k = 0; k < proj.size(); ++k) tables.emplace_back(proj[k]);
+    tables.assign(proj.List(), proj.List() + proj.size());
     if (const char* file = CPLFindFile("gdal", "gdalvrt.xsd")) tables.push_back(fs::path(file).parent_path());
     for (const char* pattern : {"/usr/lib/*/gconv", "/usr/lib64/gconv", "/usr/lib/gconv"}) {
         glob_t found{};
@@ -97,11 +97,11 @@ std::string text_of(const OGRSpatialReference& reference) {
     const auto exported = [](const OGRSpatialReference& from) {
         const char* const options[] = {"FORMAT=WKT2_2019", nullptr};
         char* text = nullptr;
-        const std::string wkt = from.exportToWkt(&text, options) == OGRERR_NONE ? text : "";
+        std::string wkt = from.exportToWkt(&text, options) == OGRERR_NONE ? text : "";
         CPLFree(text);
         return wkt;
     };
-    const std::string own = exported(reference);
+    std::string own = exported(reference);
     if (reference.IsCompound() != 0 || reference.IsVertical() != 0) return own;
     if (const int epsg = to_crs(reference).epsg; epsg != 0) {
         OGRSpatialReference of_code;
@@ -184,6 +184,7 @@ Status ForeignReading::read_mesh() {
     TALUS_ASSIGN(mesh.buildings, read_mesh_buildings(file_, {}, files));
     TALUS_ASSIGN(mesh.epsg, mesh_epsg(file_));
     std::vector<std::string> parts;
+    parts.reserve(files.size());
     for (const std::string& file : files) {
         parts.push_back(fs::path(file).lexically_relative(fs::path(file_).parent_path()).generic_string());
     }
