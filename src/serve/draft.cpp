@@ -160,7 +160,7 @@ Result<fs::path> Draft::unpack(const std::string& name, const fs::path& upload, 
 }
 
 Result<Draft::Upload> Draft::convert(std::string_view role, const std::string& name, const fs::path& upload,
-                                     const fs::path& to, geo::ForeignReader reader) const {
+                                     const fs::path& to, const geo::ForeignReader& reader) const {
     Upload made{name, {}, 0, geo::FileKind::other};
     const std::uint64_t most = bytes_left();
     if (role == "bundle") {

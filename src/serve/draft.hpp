@@ -85,7 +85,7 @@ class Draft {
                                                        const std::filesystem::path& to) const;
     [[nodiscard]] Result<Upload> convert(std::string_view role, const std::string& name,
                                          const std::filesystem::path& upload, const std::filesystem::path& to,
-                                         geo::ForeignReader reader) const;
+                                         const geo::ForeignReader& reader) const;
     void read_terrain();
     [[nodiscard]] const Upload* find(std::string_view role) const;
     [[nodiscard]] std::filesystem::path dem() const;
