@@ -64,6 +64,14 @@ export function keys(twin: Twin, stage: Stage, drawing: Drawing, bar: ViewBar, t
       case "f": stage.rig.fit(); break;
       case "n": twin.setLook(twin.natural ? "scientific" : "natural"); break;
       case "x": drawing.snap(); break;
+      case "Enter":
+        if (drawing.shape === null) return;
+        drawing.finish();
+        break;
+      case "Backspace":
+        if (drawing.shape === null) return;
+        drawing.removeLast();
+        break;
       case "?": help(); break;
       case "Delete": {
         const item = itemOf(twin.now.setup.value, twin.selection.value);

@@ -43,7 +43,7 @@ export function scenarioList(twin: Twin): HTMLElement {
     habit.disabled = hindrance !== null;
   });
   return h("div", { class: "which", role: "group", "aria-label": "Scenarios" },
-    h("div", { class: "group-head" }, h("h2", {}, "Scenarios"), h("span", { class: "grow" }), fresh, compare), list, habitRow);
+    h("div", { class: "group-head" }, h("h2", {}, "Scenarios"), fresh, compare), list, habitRow);
 }
 
 function scenarioRow(twin: Twin, name: ScenarioName): HTMLElement {
