@@ -21,7 +21,7 @@ const shortcuts: [string, [string, string][]][] = [
 
 export function help(): void {
   openDialog(dialog("Help", h("p", { class: "hint" },
-    "Run the simulation below. Controls on the left take effect in the next step, also while debris moves: draw a barrier across the path, raise the friction, trigger a release. Changes to beds and inflows take effect at the next restart. Readings are on the right. The bar at the bottom scrubs through the recording."),
+    "Run the simulation below. Controls on the left change it: draw a barrier across the path, raise the friction, trigger a release. A change to a run that has begun starts a new scenario from time 0, beside the first, or takes effect from the next step: the page asks the first time, and “Edits” below the list of scenarios holds the choice. Changes to beds and inflows take effect at the next restart. Readings are on the right. The bar at the bottom scrubs through the recording."),
   ...shortcuts.map(([title, keys]) => h("section", { class: "shortcuts" }, h("h3", {}, title),
     h("dl", {}, ...keys.flatMap(([key, what]) => [h("dt", {}, key), h("dd", {}, what)]))))));
 }

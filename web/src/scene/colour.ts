@@ -105,3 +105,8 @@ export function roundStep(value: number): number {
   for (const m of [1, 2, 2.5, 5]) if (value <= m * power * (1 + 1e-9)) return m * power;
   return 10 * power;
 }
+
+const leastSpeedScale_mps = 10;
+/** Upper end of the colours of speed: the same for everybody who looks at these runs, whenever they came, from what the server says of the whole run. */
+export const speedScale_mps = (states: readonly ({ peak_speed_mps: number | null } | null)[]): number =>
+  Math.max(leastSpeedScale_mps, ...states.map((state) => (state?.peak_speed_mps ? roundStep(state.peak_speed_mps) : 0)));
