@@ -3,6 +3,8 @@
 #include <set>
 #include <thread>
 
+#include <gmock/gmock.h>
+
 #include "serve/schema.hpp"
 #include "serve/serve_fixture.hpp"
 #include "support/photo.hpp"
