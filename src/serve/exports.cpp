@@ -32,7 +32,7 @@ constexpr ExportFile export_files[] = {
     {"report.html", "text/html", "Report with maps, plots and tables, for the browser and for paper"},
     {"results.json", "application/json", "What the report shows, as data: key figures, tables, curves"},
     {"front.csv", "text/csv", "Front: chainage, first arrival, velocity"},
-    {"run_out.csv", "text/csv", "Run-out, drop, runout angle and travel angle"},
+    {"run_out.csv", "text/csv", "Run-out, drop, run-out angle and travel angle"},
     {"buildings.csv", "text/csv", "Impact per building"},
     {"structures_over_time.csv", "text/csv", "Impact per structure that was hit, over time"},
     {"timeseries.csv", "text/csv", "Front, volumes, energy and compression over time"},

@@ -120,11 +120,11 @@ export async function testLook(run) {
 
   await run.check("a briefing is a film that plays: as long as the flow at its speed, with its captions", async () => {
     await page.keyboard.press("n"); // far sooner drawn
-    await page.click("[aria-label='Briefing']");
+    await page.click("[aria-label='Fly-through video']");
     await page.selectOption("[aria-label='Speed of the film']", "10");
     await page.locator("label:has-text('whole scene') input").uncheck();
-    const film = await saved(page, () => page.click("dialog button:has-text('Make the film')"));
-    assert.match(film.name, /-briefing\.webm$/);
+    const film = await saved(page, () => page.click("dialog button:has-text('Make the video')"));
+    assert.match(film.name, /-fly-through\.webm$/);
     await page.locator("dialog").waitFor({ state: "detached" });
     const player = await (await run.browser.newContext()).newPage();
     const seen = await player.evaluate(playFilm, film.bytes.toString("base64"));

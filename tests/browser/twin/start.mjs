@@ -151,7 +151,7 @@ export async function testStart(run) {
     await page.locator("[data-case=free_fall]").check();
     await page.click(".new-job .primary");
     const waiting = page.locator("[data-job=validation-1]");
-    await waiting.locator("text=Waits for the job before it").waitFor();
+    await waiting.locator("text=Waiting for another job").waitFor();
     await page.click("[data-job=calibration-1] >> text=Cancel");
     await page.locator("[data-job=calibration-1][data-state=cancelled]").waitFor();
     await page.locator("[data-job=validation-1][data-state=done]").waitFor();

@@ -121,7 +121,7 @@ export function calibratePanel(twin: Twin): HTMLElement {
     why.hidden = possible;
     why.textContent = status?.why_not ?? "";
     about.hidden = !possible || status.state !== "idle";
-    heading.textContent = status === null || status.state === "idle" ? "Free parameters and their ranges" : "Once more";
+    heading.textContent = status === null || status.state === "idle" ? "Free parameters and their ranges" : "Run again";
     for (const part of [observed, form]) part.hidden = !possible;
     const ran = possible && status.state !== "idle";
     const runningNow = ran && (status.state === "running" || status.state === "cancelling");

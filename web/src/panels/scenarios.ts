@@ -83,7 +83,7 @@ function scenarioRow(twin: Twin, name: ScenarioName): HTMLElement {
     const said = first && setup.value ? differences(first, setup.value, twin.scene.parameters) : [];
     const changes = changesText(setup.value) && `Changed on the way: ${changesText(setup.value)}`;
     title.textContent = setup.value?.name || `Scenario ${name}`;
-    apart.textContent = name === "A" || said.length > 0 ? said.join(", ") : "as A";
+    apart.textContent = name === "A" || said.length > 0 ? said.join(", ") : "Same as A";
     apart.hidden = apart.textContent === "";
     choose.title = [apart.textContent, changes].filter(Boolean).join("\n");
     // No further line: what is below must not move while it is clicked.

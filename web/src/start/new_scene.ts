@@ -11,17 +11,17 @@ const foot = 0.3048;
 const surveyFoot = 1200 / 3937;
 
 const slots: readonly (readonly [DraftRole, string, string])[] = [
-  ["terrain", "Terrain", "An elevation model: GeoTIFF, ASCII grid or another raster. Needed."],
+  ["terrain", "Terrain", "An elevation model: GeoTIFF, ASCII grid or another raster. Required."],
   ["release", "Release", "Polygons, or a raster of thickness in metres. Or draw it on the hillshade."],
   ["buildings", "Buildings", "Footprints (GeoPackage, GeoJSON, zipped Shapefile) or CityJSON, OBJ, glTF."],
   ["orthophoto", "Orthophoto", "A picture of the ground from above, with its position."],
-  ["bundle", "A whole scene", "In place of all this: a ZIP archive that talus made."],
+  ["bundle", "A whole scene", "Instead of the files above: a ZIP archive saved by talus."],
 ];
 
 export class NewScene {
   private readonly said = h("div", { class: "new-said", "aria-live": "polite" });
   private readonly title = h("input", { type: "text", maxlength: 100, "aria-label": "Title of the scene", placeholder: "Title", oninput: () => this.later() });
-  private readonly amount = h("input", { type: "number", step: "any", min: 0, "aria-label": "Thickness or volume", placeholder: "as in the file, or 2", onchange: () => this.later() });
+  private readonly amount = h("input", { type: "number", step: "any", min: 0, "aria-label": "Thickness or volume", placeholder: "Default 2 m", onchange: () => this.later() });
   private readonly unit = h("span", { class: "muted" }, "m, normal to the slope");
   private readonly amounts = h("div", { class: "row wrap" }, choice("How much is released", [["thickness", "Thickness"], ["volume", "Volume"]], "thickness", (value) => {
     this.byVolume = value === "volume";
@@ -46,7 +46,7 @@ export class NewScene {
     const left = h("div", { class: "new-files" }, ...slots.map(([role, name, hint]) => this.slot(role, name, hint)));
     this.element = h("section", { class: "new-scene", "aria-labelledby": "new-scene" },
       h("div", { class: "start-title" }, h("h2", { id: "new-scene" }, "New scene"), button("Discard", { class: "quiet", onclick: () => void this.discard() })),
-      h("p", { class: "muted" }, `Drop files here. They stay on the computer that runs talus: up to ${bytes(limits.bytes)} together, ${Math.round(limits.cells / 1e6)} million cells.`),
+      h("p", { class: "muted" }, `Drop files here. They stay on the computer that runs talus. Limits: ${bytes(limits.bytes)} together, ${Math.round(limits.cells / 1e6)} million cells.`),
       h("div", { class: "new-columns" }, left, h("div", { class: "new-map" }, this.hillshade.element, this.amounts)),
       this.said, h("div", { class: "row new-last" }, this.title, this.create));
     this.hillshade.show(null);
@@ -71,7 +71,7 @@ export class NewScene {
         event.preventDefault();
         card.classList.remove("over");
         const files = [...(event.dataTransfer?.files ?? [])];
-        if (files.length > 1) return this.complain("Several files were dropped. What belongs together, such as the parts of a Shapefile, is packed in one ZIP archive first.");
+        if (files.length > 1) return this.complain("Several files were dropped. Pack files that belong together, such as the parts of a Shapefile, into one ZIP archive.");
         if (files[0]) void this.upload(role, files[0]);
       } },
       h("div", { class: "row" }, holder, input, button("Choose", { class: "small", "aria-label": `Choose a file: ${name}`, onclick: () => input.click() })));
@@ -82,10 +82,13 @@ export class NewScene {
   }
 
   private async upload(role: DraftRole, file: File): Promise<void> {
-    if (this.draft && file.size > this.draft.bytes_left) return this.complain(`${file.name} has ${bytes(file.size)}; ${bytes(this.draft.bytes_left)} may still come. Cut it to the part that matters.`);
+    if (this.draft && file.size > this.draft.bytes_left) return this.complain(`${file.name} has ${bytes(file.size)}; ${bytes(this.draft.bytes_left)} are left of the limit. Crop it to the area of interest.`);
     if (file.size === 0) return this.complain(`${file.name} is empty.`);
     if (role === "terrain") this.mending = { epsg: null, metric: false, metres_per_unit: null, nodata: null };
-    await this.change(`${file.name} is read …`, () => this.api.uploadToDraft(this.id, role, file));
+    await this.change("Uploading… 0 %", () => this.api.uploadToDraft(this.id, role, file, (share) => this.tell(share < 1 ? `Uploading… ${Math.floor(100 * share)} %` : `Reading ${file.name}…`)));
+  }
+  private tell(what: string): void {
+    this.said.replaceChildren(h("p", { class: "card", role: "status" }, what));
   }
   /** Asks for another state of the draft and shows it. */
   private async change(what: string, ask: () => Promise<Draft>): Promise<void> {
@@ -93,7 +96,7 @@ export class NewScene {
     ++this.asked;
     ++this.busy;
     this.create.disabled = true;
-    this.said.replaceChildren(h("p", { class: "card" }, what));
+    this.tell(what);
     try {
       const draft = await ask();
       this.draft = draft;
@@ -113,7 +116,7 @@ export class NewScene {
       const file = draft.files[role];
       place?.card.classList.toggle("has", file !== undefined);
       place?.holder.replaceChildren(h("b", {}, name), file === undefined ? h("span", { class: "muted" }, hint)
-        : h("span", { class: "new-file" }, `${file.name} · ${bytes(file.bytes)}`, button(`Take ${file.name} away`, { icon: "close", bare: true, class: "bare quiet small", onclick: () => void this.change("…", () => this.api.removeFromDraft(this.id, role)) })));
+        : h("span", { class: "new-file" }, `${file.name} · ${bytes(file.bytes)}`, button(`Remove ${file.name}`, { icon: "close", bare: true, class: "bare quiet small", onclick: () => void this.change("…", () => this.api.removeFromDraft(this.id, role)) })));
     }
     this.showMendings(draft);
     this.showAmounts(draft);
@@ -128,7 +131,7 @@ export class NewScene {
     if (terrain === null) return this.mendings.replaceChildren();
     const mend = (part: Partial<MendingOfTerrain>): void => {
       const wanted = { ...this.mending, ...part };
-      void this.change("The terrain is corrected …", async () => {
+      void this.change("Converting the terrain…", async () => {
         const changed = await this.api.mendDraft(this.id, wanted);
         this.mending = wanted;
         return changed;
@@ -142,8 +145,8 @@ export class NewScene {
       ...[["", terrain.value_unit === "" || factor !== null ? "metres" : `as stated: ${terrain.value_unit}`], [String(foot), "feet"], [String(surveyFoot), "US survey feet"]].map(([value, text]) =>
         h("option", { value, selected: value === (factor === null ? "" : String(factor)) }, text)));
     const rows = [
-      terrain.crs === "" || this.mending.epsg !== null ? h("div", { class: "row" }, h("span", {}, "It is in EPSG:"), epsg, button("Apply", { class: "small", onclick: () => mend({ epsg: numberOf(epsg) }) })) : null,
-      this.mending.metric ? button("Leave it as it was", { class: "small", onclick: () => mend({ metric: false }) })
+      terrain.crs === "" || this.mending.epsg !== null ? h("div", { class: "row" }, h("span", {}, "Reference system, EPSG:"), epsg, button("Apply", { class: "small", onclick: () => mend({ epsg: numberOf(epsg) }) })) : null,
+      this.mending.metric ? button("Undo conversion", { class: "small", onclick: () => mend({ metric: false }) })
         : terrain.problem !== null && terrain.metric_crs !== "" ? button(`Bring it onto square cells in metres (${terrain.metric_crs})`, { class: "small", onclick: () => mend({ metric: true }) }) : null,
       h("div", { class: "row wrap" }, h("label", {}, "Heights are in ", unit), h("label", {}, "no data is ", nodata)),
     ];
@@ -154,13 +157,13 @@ export class NewScene {
 
   private complain(sentence: string): void {
     this.create.disabled = true;
-    const outside = /lies outside|reaches beyond/.test(sentence) ? " Draw it on the hillshade, or take a terrain that reaches as far. A file without the right reference system also lands elsewhere." : "";
-    this.said.replaceChildren(h("div", { class: "card bad", role: "alert" }, h("b", {}, "Not yet a scene"), h("p", {}, sentence + outside)));
+    const outside = /lies outside|reaches beyond/.test(sentence) ? " Draw it on the hillshade, or use a terrain that covers it. Check the reference system of the file as well." : "";
+    this.said.replaceChildren(h("div", { class: "card bad", role: "alert" }, h("b", {}, "Not ready to run"), h("p", {}, sentence + outside)));
   }
   private say(): void {
     const { terrain, files } = this.draft ?? { terrain: null, files: {} as Draft["files"] };
-    const next = terrain === null ? "First of all, a terrain." : terrain.problem !== null ? "The terrain cannot be used as it is: see beside its name." : "Now the release: a file, or its outline drawn on the hillshade.";
-    if (files.bundle === undefined) this.said.replaceChildren(h("p", { class: "card" }, next));
+    const next = terrain === null ? "Start by choosing a terrain." : terrain.problem !== null ? "The terrain cannot be used as it is; the reason is given below its name." : "Next, the release: choose a file, or draw its outline on the hillshade.";
+    if (files.bundle === undefined) this.tell(next);
   }
   private get wanted(): { title: string; thickness_m: number | null; volume_m3: number | null; scar: [number, number][] | null } {
     const amount = this.amount.value === "" || this.amounts.hidden ? null : Number(this.amount.value);
@@ -181,7 +184,7 @@ export class NewScene {
   private async check(): Promise<void> {
     if (this.busy > 0) return;
     const asked = ++this.asked;
-    this.said.replaceChildren(h("p", { class: "card" }, "It is checked …"));
+    this.tell("Checking the scene…");
     try {
       const found = await this.api.makeOfDraft(this.id, { ...this.wanted, check: true });
       if (asked === this.asked) this.showChecked(found);
@@ -191,7 +194,7 @@ export class NewScene {
   }
   private showChecked(found: Checked): void {
     this.create.disabled = false;
-    this.said.replaceChildren(h("div", { class: "card new-good" }, h("b", {}, "This can be run"), h("pre", {}, found.summary),
+    this.said.replaceChildren(h("div", { class: "card new-good" }, h("b", {}, "Ready to run"), h("pre", {}, found.summary),
       found.notes.length === 0 ? null : h("ul", {}, ...found.notes.map((note) => h("li", {}, note)))));
   }
   private async finish(): Promise<void> {

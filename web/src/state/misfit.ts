@@ -70,7 +70,7 @@ export function progressText(status: CalibrationStatus): string {
       const left = aboutTime(status.wall_remaining_s);
       return `${done}${failed}${status.phase ? ` · ${phases[status.phase]}` : ""}${left ? ` · ${left} left at most` : ""}`;
     }
-    case "cancelling": return `${done}${failed} · ends after the present step`;
+    case "cancelling": return `${done}${failed} · stops after the current step`;
     case "cancelled": return `Cancelled after ${computed}${failed}`;
     case "failed": return `Ended after ${computed}${failed}: ${status.message}`;
     case "done": return `${computed}${failed}${status.result?.settled ? ": no further gain expected" : "; stopped at the maximum number"}${status.message ? `. ${status.message}` : ""}`;
