@@ -36,10 +36,13 @@ export async function testDrawing(run) {
     await clickGround(page, 0.44, 0.72);
     await clickGround(page, 0.52, 0.73, { clickCount: 2 });
     assert.equal((await newest("inflow", known)).line.length, 2);
-    await page.click("[aria-label='Draw a cross-section']");
+    await page.click("[data-tab=section]");
+    const draw = page.locator(".tab-panel:visible button:has-text('Draw a section')");
+    await draw.click();
     await clickGround(page, 0.4, 0.55);
     await clickGround(page, 0.6, 0.6, { clickCount: 2 });
-    await until(() => page.locator("[data-tab=section][aria-selected=true]").count(), (n) => n === 1, "the section");
+    await until(() => draw.getAttribute("aria-pressed"), (pressed) => pressed === "false", "the section");
+    await until(() => page.locator(".tab-panel:visible .chart").count(), (n) => n > 0, "its chart");
   });
 
   await run.check("Enter ends an outline also after a corner was clicked again, and a double click on one does", async () => {
@@ -66,7 +69,7 @@ export async function testDrawing(run) {
   });
 
   await run.check("no button of the barrier's form or of the list of scenarios is cut off, beside a scroll bar too", async () => {
-    await page.click("[aria-label='New scenario'], .which button:has-text('Compare')");
+    await page.click(".which button:has-text('Compare')");
     await until(() => server.ask("session"), (s) => s.scenarios.length === 2, "two scenarios");
     await page.addStyleTag({ content: ".controls { padding-right: 15px; }" });
     await page.click("[data-draw=barrier]");
