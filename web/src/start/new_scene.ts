@@ -2,13 +2,12 @@
 import type { Api } from "../protocol/api";
 import type { Checked, Draft, DraftRole, MendingOfTerrain, UploadLimits } from "../protocol/start";
 import { bytes, fixed } from "../state/format";
+import { heightsText, heightUnit, heightUnits } from "../state/heights";
 import { choice } from "../ui/choice";
 import { button, h } from "../ui/dom";
 import { Hillshade } from "./hillshade";
 
 const check_ms = 500;
-const foot = 0.3048;
-const surveyFoot = 1200 / 3937;
 
 const slots: readonly (readonly [DraftRole, string, string])[] = [
   ["terrain", "Terrain", "An elevation model: GeoTIFF, ASCII grid or another raster. Required."],
@@ -35,6 +34,8 @@ export class NewScene {
   readonly element: HTMLElement;
   private draft: Draft | null = null;
   private byVolume = false;
+  /** Its user has said what the unit of the heights is, so that the file's own is no longer proposed. */
+  private heightsChosen = false;
   private mending: MendingOfTerrain = { epsg: null, metric: false, metres_per_unit: null, nodata: null };
   /** Counts what was asked, so that an answer to an earlier state is not shown. */
   private asked = 0;
@@ -84,6 +85,7 @@ export class NewScene {
   private async upload(role: DraftRole, file: File): Promise<void> {
     if (this.draft && file.size > this.draft.bytes_left) return this.complain(`${file.name} has ${bytes(file.size)}; ${bytes(this.draft.bytes_left)} are left of the limit. Crop it to the area of interest.`);
     if (file.size === 0) return this.complain(`${file.name} is empty.`);
+    if (role === "terrain") this.heightsChosen = false;
     if (role === "terrain") this.mending = { epsg: null, metric: false, metres_per_unit: null, nodata: null };
     await this.change("Uploading… 0 %", () => this.api.uploadToDraft(this.id, role, file, (share) => this.tell(share < 1 ? `Uploading… ${Math.floor(100 * share)} %` : `Reading ${file.name}…`)));
   }
@@ -141,17 +143,23 @@ export class NewScene {
     const epsg = h("input", { type: "number", min: 1024, max: 999999, value: this.mending.epsg ?? "", placeholder: "2326", "aria-label": "EPSG code of the terrain" });
     const nodata = h("input", { type: "number", step: "any", value: this.mending.nodata ?? "", placeholder: "none", "aria-label": "Value that means no data", onchange: () => mend({ nodata: numberOf(nodata) }) });
     const factor = this.mending.metres_per_unit;
-    const unit = h("select", { "aria-label": "Unit of the heights", onchange: () => mend({ metres_per_unit: unit.value === "" ? null : Number(unit.value) }) },
-      ...[["", terrain.value_unit === "" || factor !== null ? "metres" : `as stated: ${terrain.value_unit}`], [String(foot), "feet"], [String(surveyFoot), "US survey feet"]].map(([value, text]) =>
-        h("option", { value, selected: value === (factor === null ? "" : String(factor)) }, text)));
+    // Heights of a file in feet are in feet, unless its user says otherwise: a conversion of the cells alone would leave them.
+    const proposed = heightUnit(factor, this.heightsChosen ? null : terrain.height_unit_m);
+    const units = heightUnits(proposed);
+    const unit = h("select", { "aria-label": "Unit of the heights", onchange: () => {
+      this.heightsChosen = true;
+      mend({ metres_per_unit: unit.value === "" ? null : Number(unit.value) });
+    } }, ...units.map(([value, text]) => h("option", { value: value === null ? "" : String(value), selected: value === proposed }, text)));
+    const unitName = units.find(([value]) => value === proposed)?.[1] ?? "";
     const rows = [
       terrain.crs === "" || this.mending.epsg !== null ? h("div", { class: "row" }, h("span", {}, "Reference system, EPSG:"), epsg, button("Apply", { class: "small", onclick: () => mend({ epsg: numberOf(epsg) }) })) : null,
       this.mending.metric ? button("Undo conversion", { class: "small", onclick: () => mend({ metric: false }) })
-        : terrain.problem !== null && terrain.metric_crs !== "" ? button(`Bring it onto square cells in metres (${terrain.metric_crs})`, { class: "small", onclick: () => mend({ metric: true }) }) : null,
+        : terrain.problem !== null && terrain.metric_crs !== "" ? button(`Convert to square cells in metres (${terrain.metric_crs})`, { class: "small", onclick: () => mend({ metric: true, metres_per_unit: proposed }) }) : null,
+      proposed !== factor ? h("div", { class: "row wrap" }, h("span", {}, `The file suggests heights in ${unitName}.`), button(`Convert heights from ${unitName}`, { class: "small", onclick: () => mend({ metres_per_unit: proposed }) })) : null,
       h("div", { class: "row wrap" }, h("label", {}, "Heights are in ", unit), h("label", {}, "no data is ", nodata)),
     ];
     this.mendings.replaceChildren(terrain.problem === null
-      ? h("p", { class: "muted" }, [`${terrain.columns} × ${terrain.rows} cells of ${fixed(terrain.cell_m ?? NaN, 2)} m`, terrain.crs, (terrain.nodata_share ?? 0) > 0 ? `${fixed(100 * (terrain.nodata_share ?? 0), 1)} % without data` : ""].filter((part) => part !== "").join(" · "))
+      ? h("p", { class: "muted" }, [`${terrain.columns} × ${terrain.rows} cells of ${fixed(terrain.cell_m ?? NaN, 2)} m`, heightsText(terrain.elevation_m), terrain.crs, (terrain.nodata_share ?? 0) > 0 ? `${fixed(100 * (terrain.nodata_share ?? 0), 1)} % without data` : ""].filter((part) => part !== "").join(" · "))
       : h("p", { class: "new-problem", role: "alert" }, terrain.problem), ...rows.filter((row) => row !== null));
   }
 
