@@ -90,6 +90,35 @@ export async function testDrawing(run) {
     await page.setViewportSize({ width: 1280, height: 720 });
   });
 
+  await run.check("the view is never blank while its size changes, as when a legend appears; contours are told where they are drawn", async () => {
+    // After the page's own observer, in the same display frame: what the canvas holds then is what is shown.
+    const drawn = await page.evaluate(() => new Promise((resolve) => {
+      const stage = document.querySelector(".stage");
+      const canvas = stage.querySelector("canvas");
+      let first = true;
+      new ResizeObserver(() => {
+        if (first) { // at once, of the present size
+          first = false;
+          return void setTimeout(() => (document.querySelector(".legends").style.minHeight = "90px"));
+        }
+        const gl = canvas.getContext("webgl2");
+        const pixel = new Uint8Array(4);
+        gl.readPixels(canvas.width / 2, canvas.height / 2, 1, 1, gl.RGBA, gl.UNSIGNED_BYTE, pixel);
+        resolve([...pixel]);
+      }).observe(stage);
+    }));
+    assert.ok(drawn[3] === 255 && drawn[0] + drawn[1] + drawn[2] > 0, `the middle of the view: ${drawn}`);
+    const note = () => page.textContent(".map-note");
+    assert.match(await note(), /^Contours every/);
+    await page.locator("label:has-text('Contours') input").uncheck();
+    await until(note, (text) => !/Contours/.test(text), "no contours");
+    await page.locator("label:has-text('Contours') input").check();
+    await page.locator("label:has-text('Natural') input").check();
+    await until(note, (text) => !/Contours/.test(text), "none in the natural look");
+    await page.locator("label:has-text('Natural') input").uncheck();
+    await until(note, (text) => /Contours/.test(text), "contours again");
+  });
+
   await run.check("undo and redo of a run that has begun stay in its scenario", async () => {
     const key = "material.friction_coefficient";
     await page.click("button[data-scenario=B]");
