@@ -71,7 +71,7 @@ export async function testDrawing(run) {
   await run.check("no button of the barrier's form or of the list of scenarios is cut off, beside a scroll bar too", async () => {
     await page.click(".which button:has-text('Compare')");
     await until(() => server.ask("session"), (s) => s.scenarios.length === 2, "two scenarios");
-    await page.addStyleTag({ content: ".controls { padding-right: 15px; }" });
+    await page.evaluate(() => (document.querySelector(".controls").style.paddingRight = "15px"));
     await page.click("[data-draw=barrier]");
     for (const [width, height] of [[1440, 900], [1024, 768]]) {
       await page.setViewportSize({ width, height });
