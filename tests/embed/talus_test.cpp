@@ -162,12 +162,13 @@ TEST(Library, opens_no_saved_simulation_whose_settings_name_another_file) {
     }
     std::ifstream saved(file);
     const std::string text{std::istreambuf_iterator<char>(saved), {}};
-    std::ofstream(file) << std::regex_replace(text, std::regex(R"("overrides"\s*:\s*\[)"),
-                                              R"("overrides": ["terrain.file=/etc/passwd")");
+    std::ofstream(file) << std::regex_replace(text, std::regex(R"("overrides"\s*:\s*\[[^\]]*\])"),
+                                              R"("overrides": ["terrain.file=/etc/passwd"])");
     talus_simulation* none = nullptr;
     ASSERT_EQ(talus_open_saved(file.c_str(), nullptr, &none, &error), TALUS_BAD_INPUT);
-    EXPECT_NE(std::string(error.text).find("terrain.file: the session sets a file that its scene does not name, "
-                                           "/etc/passwd"),
+    EXPECT_NE(std::string(error.text)
+                  .find("terrain.file: the session sets a file that its scene does not name, "
+                        "/etc/passwd"),
               std::string::npos)
         << error.text;
 }

@@ -51,7 +51,6 @@ export async function testRestart(run) {
       run.servers.push(server);
     };
     await start(0);
-    await page.goto("about:blank");
     await page.goto(server.controller);
     await page.locator("[data-scene=sham_tseng]").click();
     await shows(page, () => window.talusStats?.frames > 0 && document.querySelector(".transport"), "the first picture");
