@@ -151,11 +151,12 @@ std::string summary_text(const scene::Scene& scene, const run::RunResult& result
                      fmt::format("at {:g} m: {}; observed {:g} m/s", observed.chainage, computed, observed.value()));
     }
     if (const observe::RunOut& r = seen.run_out; std::isfinite(r.along_flow)) {
-        text += line("run-out", fmt::format("{}{:.0f} m along the flow, {:.0f} m straight, drop {:.0f} m, runout angle "
-                                            "{:.1f} degrees{}",
-                                            r.at_least ? "at least " : "", r.along_flow, r.straight, r.drop,
-                                            r.runout_angle * degrees_per_radian,
-                                            r.at_least ? fmt::format("; debris left the {}", result.domain()) : ""));
+        text +=
+            line("run-out", fmt::format("{}{:.0f} m along the flow, {:.0f} m straight, drop {:.0f} m, run-out angle "
+                                        "{:.1f} degrees{}",
+                                        r.at_least ? "at least " : "", r.along_flow, r.straight, r.drop,
+                                        r.runout_angle * degrees_per_radian,
+                                        r.at_least ? fmt::format("; debris left the {}", result.domain()) : ""));
     }
     if (const double chainage = seen.run_out.front_chainage; std::isfinite(chainage)) {
         text += line("front", fmt::format("to chainage {:.0f} m{}", chainage,

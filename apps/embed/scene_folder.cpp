@@ -114,8 +114,8 @@ Status check_building(const talus_building& building, std::size_t k) {
         }
     }
     if (!(building.height > 0 && building.height <= highest_building)) {
-        return Error{
-            fmt::format("buildings[{}].height = {}: must be above 0 to {} (m)", k, building.height, highest_building)};
+        return Error{fmt::format("buildings[{}].height = {}: must be greater than 0 and at most {} (m)", k,
+                                 building.height, highest_building)};
     }
     return {};
 }

@@ -136,7 +136,7 @@ std::vector<Measure> measures_of(const scene::Scene& scene) {
     std::vector<Measure> list = {{"run_out_m", "Run-out along the flow", "m"},
                                  {"run_out_straight_m", "Run-out in a straight line", "m"},
                                  {"drop_m", "Drop from crown to toe", "m"},
-                                 {"runout_angle_deg", "Runout angle", "deg"},
+                                 {"runout_angle_deg", "Run-out angle", "deg"},
                                  {"travel_angle_deg", "Travel angle of the centres of mass", "deg"},
                                  {"reached_area_m2", "Area reached", "m2"},
                                  {"largest_depth_m", "Largest peak depth", "m"},

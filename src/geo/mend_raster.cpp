@@ -1,6 +1,8 @@
 #include "geo/mend_raster.hpp"
 
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <filesystem>
 #include <memory>
 #include <system_error>
@@ -11,21 +13,48 @@
 
 #include "core/try.hpp"
 #include "geo/gdal.hpp"
+#include "geo/raster_source.hpp"
 #include "geo/spatial_reference.hpp"
 
 namespace talus::geo {
 namespace {
 
-std::string metric_crs_of(GDALDataset& data) {
+/// A system in which a raster can be brought onto square cells in metres.
+struct MetricSystem {
+    std::string name;       ///< "EPSG:32650"; empty: there is none
+    double square_own = 0;  ///< m: the system is its own, and only its cells are changed, to this size
+};
+
+MetricSystem metric_system_of(GDALDataset& data) {
     std::array<double, 6> g{};
     const OGRSpatialReference* reference = data.GetSpatialRef();
-    if (reference == nullptr || reference->IsEmpty() || data.GetGeoTransform(g.data()) != CE_None) return "";
+    if (reference == nullptr || reference->IsEmpty() || data.GetGeoTransform(g.data()) != CE_None) return {};
     OGRSpatialReference plain = *reference;
     plain.SetAxisMappingStrategy(OAMS_TRADITIONAL_GIS_ORDER);
     const double column = data.GetRasterXSize() / 2.0, line = data.GetRasterYSize() / 2.0;
-    const auto place =
-        to_longitude_latitude(plain, {g[0] + column * g[1] + line * g[2], g[3] + column * g[4] + line * g[5]});
-    return place ? metric_crs_for(place) : "";
+    const PlanPoint centre{g[0] + column * g[1] + line * g[2], g[3] + column * g[4] + line * g[5]};
+    // Its owner's other data are in the same system: it stays, where its metre is one.
+    if (plain.IsProjected() != 0 && std::abs(plain.GetLinearUnits() - 1) < 1e-9) {
+        const auto scale = scale_factor(plain, centre);
+        if (scale && std::abs(*scale - 1) <= largest_scale_error) {
+            const Crs own = to_crs(plain);
+            return {own.epsg != 0 ? fmt::format("EPSG:{}", own.epsg) : "its own reference system",
+                    std::min(std::hypot(g[1], g[4]), std::hypot(g[2], g[5]))};
+        }
+    }
+    const auto place = to_longitude_latitude(plain, centre);
+    if (!place) return {};
+    return {metric_crs_for(place)};
+}
+
+double height_unit_of(GDALDataset& data) {
+    if (const char* unit = data.GetRasterBand(1)->GetUnitType(); unit != nullptr && *unit != '\0') {
+        return metres_per(unit).value_or(1);
+    }
+    const OGRSpatialReference* reference = data.GetSpatialRef();
+    if (reference == nullptr || reference->IsEmpty()) return 1;
+    if (reference->IsVertical() != 0) return reference->GetTargetLinearUnits("VERT_CS");
+    return reference->IsProjected() != 0 ? reference->GetLinearUnits() : 1;
 }
 
 /// As gdal_translate.
@@ -38,11 +67,17 @@ GDALDatasetUniquePtr translate(GDALDataset& from, const std::string& to, const C
 }
 
 /// As gdalwarp, computed as it is read.
-GDALDatasetUniquePtr warp(GDALDataset& from, const std::string& crs) {
+GDALDatasetUniquePtr warp(GDALDataset& from, const MetricSystem& system) {
     CPLStringList arguments;
-    for (const char* word :
-         {"-of", "VRT", "-t_srs", crs.c_str(), "-r", "bilinear", "-ot", "Float32", "-dstnodata", "-9999"}) {
+    for (const char* word : {"-of", "VRT", "-r", "bilinear", "-ot", "Float32", "-dstnodata", "-9999"}) {
         arguments.AddString(word);
+    }
+    if (system.square_own > 0) {
+        const std::string cell = fmt::format("{:.17g}", system.square_own);
+        for (const char* word : {"-tr", cell.c_str(), cell.c_str()}) arguments.AddString(word);
+    } else {
+        arguments.AddString("-t_srs");
+        arguments.AddString(system.name.c_str());
     }
     const std::unique_ptr<GDALWarpAppOptions, decltype(&GDALWarpAppOptionsFree)> options(
         GDALWarpAppOptionsNew(arguments.List(), nullptr), &GDALWarpAppOptionsFree);
@@ -70,8 +105,9 @@ Result<RasterFacts> raster_facts(const std::string& file) {
     facts.rows = data->GetRasterYSize();
     const OGRSpatialReference* reference = data->GetSpatialRef();
     if (reference != nullptr && !reference->IsEmpty()) facts.crs = to_crs(*reference).label();
-    facts.metric_crs = metric_crs_of(*data);
+    facts.metric_crs = metric_system_of(*data).name;
     if (const char* unit = data->GetRasterBand(1)->GetUnitType(); unit != nullptr) facts.value_unit = unit;
+    facts.height_unit = height_unit_of(*data);
     return facts;
 }
 
@@ -96,9 +132,9 @@ Status mend_raster(const std::string& file, const std::string& to, const Mending
     if (!first) return failed();
     GDALDatasetUniquePtr warped;
     if (mending.metric) {
-        const std::string crs = metric_crs_of(*first);
-        if (crs.empty()) return Error{file + ": it states no position, so that no metric system can be chosen"};
-        warped = warp(*first, crs);
+        const MetricSystem system = metric_system_of(*first);
+        if (system.name.empty()) return Error{file + ": it states no position, so that no metric system can be chosen"};
+        warped = warp(*first, system);
         if (!warped) return failed();
     }
     GDALDataset& last = warped ? *warped : *first;

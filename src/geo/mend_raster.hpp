@@ -15,15 +15,19 @@ struct RasterFacts {
     std::string format;  ///< "GTiff"
     int columns = 0, rows = 0;
     std::string crs;         ///< with its name; empty: none stated
-    std::string metric_crs;  ///< "EPSG:32650": a metric one that suits its place; empty: the place is not known
+    std::string metric_crs;  ///< "EPSG:32650": its own if that is metric and true to scale, else one that suits its
+                             ///< place; empty: the place is not known
     std::string value_unit;  ///< as stated; empty: none
+    /// Metres per unit of its heights, as far as it says: the unit of its values, else the vertical or else the
+    /// horizontal one of its reference system.
+    double height_unit = 1;
 };
 [[nodiscard]] Result<RasterFacts> raster_facts(const std::string& file);
 
 /// What is to be mended of a raster, each as its user states it.
 struct Mending {
     int epsg = 0;                           ///< the system that it is in; 0: as the file says
-    bool metric = false;                    ///< bring it onto square cells of the metric system of its place
+    bool metric = false;                    ///< bring it onto square cells of RasterFacts::metric_crs
     std::optional<double> metres_per_unit;  ///< of its values
     std::optional<double> nodata;           ///< the value that marks missing data
 

@@ -61,15 +61,6 @@ constexpr std::array unit_names = {
     UnitName{"kilometer", 1000},
 };
 
-/// Metres per unit; empty for an unknown name.
-std::optional<double> metres_per(std::string name) {
-    std::transform(name.begin(), name.end(), name.begin(), [](unsigned char c) { return std::tolower(c); });
-    for (const UnitName& unit : unit_names) {
-        if (unit.name == name) return unit.metres;
-    }
-    return std::nullopt;
-}
-
 /// Affine position of a raster, as GDAL gives it: always of the corner of the first cell, whether the file says that
 /// its pixels are areas or points.
 struct Position {
@@ -115,7 +106,7 @@ Status check_crs(const std::string& file, const std::string& driver, const OGRSp
     }
     // Web Mercator and similar systems are nominally metric, but their metre is not a metre on the ground.
     const auto scale = scale_factor(reference, centre);
-    if (scale && std::abs(*scale - 1) > 0.02) {
+    if (scale && std::abs(*scale - 1) > largest_scale_error) {
         return Error{fmt::format("{}: a metre of {} is {:.3f} m on the ground here, a CRS true to scale is needed: {}",
                                  file, crs.label(), 1 / *scale, warp_command(file, "-t_srs " + metric, "_metric"))};
     }
@@ -198,6 +189,14 @@ Error no_bands(const std::string& file, GDALDataset& data) {
 }
 
 }  // namespace
+
+std::optional<double> metres_per(std::string name) {
+    std::transform(name.begin(), name.end(), name.begin(), [](unsigned char c) { return std::tolower(c); });
+    for (const UnitName& unit : unit_names) {
+        if (unit.name == name) return unit.metres;
+    }
+    return std::nullopt;
+}
 
 Status check_raw_size(const std::string& file, GDALDataset& data) {
     const std::string driver = data.GetDriver() != nullptr ? data.GetDriver()->GetDescription() : "";

@@ -30,6 +30,9 @@ struct RasterSource {
 /// the CRS of a file that states none; without it that is an error.
 [[nodiscard]] Result<RasterSource> open_raster(const std::string& file, int band, const Crs* otherwise = nullptr);
 
+/// Metres per unit of a name as rasters state it ("ft"); empty: not known.
+[[nodiscard]] std::optional<double> metres_per(std::string name);
+
 /// GDAL reads zeros where a raw file ends too early; detected by its size.
 [[nodiscard]] Status check_raw_size(const std::string& file, GDALDataset& data);
 

@@ -27,6 +27,9 @@ namespace talus::geo {
 /// "EPSG:nnnn" for no place.
 [[nodiscard]] std::string metric_crs_for(const std::optional<PlanPoint>& longitude_latitude);
 
+/// A metre of a system that is metric by name, such as Web Mercator, may be this far from one on the ground.
+inline constexpr double largest_scale_error = 0.02;
+
 /// Grid distance over true distance at a place, the mean of both axes; empty where it cannot be computed.
 [[nodiscard]] std::optional<double> scale_factor(const OGRSpatialReference& reference, const PlanPoint& p);
 

@@ -30,7 +30,7 @@ struct Range {
     bool high_included = true;
 
     [[nodiscard]] bool contains(double value) const;
-    /// "above 0", "0 to below 1", "at least 1", "" when everything is allowed.
+    /// "above 0", "greater than 0 and at most 1", "0 to below 1", "at least 1", "" when everything is allowed.
     [[nodiscard]] std::string text() const;
 };
 

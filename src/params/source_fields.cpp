@@ -94,7 +94,7 @@ Section declare_bed() {
         return Violation{
             "growth_rate_per_m",
             ": missing; law = \"growth\" needs it: ln(volume after / volume before) over the length of the "
-            "bed, above 0 to 1 (1/m)"};
+            "bed, greater than 0 and at most 1 (1/m)"};
     });
     return s.take();
 }

@@ -45,7 +45,7 @@ Section declare_barrier() {
     s.key("thickness_m", "m", &BarrierSpec::thickness, above_to(0, 100),
           "Thickness across the line; at least half a particle spacing.")
         .live_in({.label = "Thickness", .slider_low = 0.1, .slider_high = 5, .first = 1})
-        .at_least_spacings(0.5, "debris on both sides would feel each other through it");
+        .at_least_spacings(0.5, "thinner walls let debris interact across them");
     s.optional_key("passing_share", "", &BarrierSpec::passing_share, from_to_below(0, 1), "it is a wall",
                    "Makes it a net: the share of the debris, by volume, in grains that pass its meshes (the percentage "
                    "passing at the size of the opening, over 100). The others are held as by a wall.")
@@ -66,7 +66,7 @@ Section declare_barrier() {
                   .first = 0.5,
                   .tick = "Gap below",
                   .tick_help = "It hangs above the ground: debris passes below it"})
-        .at_least_spacings(1, "nothing would get through a lower gap; smaller particles allow less")
+        .at_least_spacings(1, "nothing passes through lower gaps; smaller particles allow less")
         .below_key("height_m");
     s.optional_key("resistance_Npm", "N/m", &BarrierSpec::resistance_force, between(1, 1e12), "it never fails",
                    "Filtered force per metre of the line above which it is destroyed: it is gone from then on.")
@@ -96,7 +96,7 @@ Section declare_barrier_opening() {
     s.key("width_m", "m", &BarrierOpeningSpec::width, above_to(0, 1e5),
           "Width along the line; at least two particle spacings, or nothing gets through.")
         .live_as()
-        .at_least_spacings(2, "nothing would get through a narrower one; smaller particles allow less")
+        .at_least_spacings(2, "nothing passes through narrower ones; smaller particles allow less")
         .required = true;
     s.key("sill_height_m", "m", &BarrierOpeningSpec::sill, between(0, 200),
           "How much of the barrier stands there, above the ground; 0: open to the ground.")

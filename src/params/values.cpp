@@ -97,7 +97,8 @@ bool Range::contains(double value) const {
 std::string Range::text() const {
     const bool has_low = std::isfinite(low), has_high = std::isfinite(high);
     if (has_low && has_high) {
-        return fmt::format("{}{} to {}{}", low_included ? "" : "above ", low, high_included ? "" : "below ", high);
+        if (low_included) return fmt::format("{} to {}{}", low, high_included ? "" : "below ", high);
+        return fmt::format("greater than {} and {} {}", low, high_included ? "at most" : "below", high);
     }
     if (has_low) return fmt::format("{} {}", low_included ? "at least" : "above", low);
     if (has_high) return fmt::format("{} {}", high_included ? "at most" : "below", high);

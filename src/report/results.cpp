@@ -173,7 +173,7 @@ Json key_figures(const scene::Scene& scene, const run::RunResult& result) {
                           fixed(o.run_out.drop, 1), front,
                           o.run_out.at_least ? fmt::format("; debris left the {}", result.domain()) : "")
             : "no debris ran out");
-    add("runout_angle_deg", "Runout angle", o.run_out.runout_angle * degrees_per_radian, "f1", ran ? "°" : "",
+    add("runout_angle_deg", "Run-out angle", o.run_out.runout_angle * degrees_per_radian, "f1", ran ? "°" : "",
         std::isfinite(o.run_out.travel_angle) ? fmt::format("travel angle of the centre of mass\u00a0{}°",
                                                             fixed(o.run_out.travel_angle * degrees_per_radian, 1))
                                               : "");

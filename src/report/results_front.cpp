@@ -94,7 +94,7 @@ void draw_profile(Plot& plot, const scene::Scene& scene, const run::RunResult& r
         const std::vector<double> x = {crown->chainage, toe->chainage}, z = {foot + run_out.drop, foot};
         plot.line(x, z, "energy-line");
         plot.label(x[0] + 0.62 * (x[1] - x[0]), z[0] + 0.62 * (z[1] - z[0]), 12, -6, "start", "note-strong",
-                   fmt::format("runout angle {}°", fixed(run_out.runout_angle * degrees_per_radian, 1)));
+                   fmt::format("run-out angle {}°", fixed(run_out.runout_angle * degrees_per_radian, 1)));
     }
     if (std::isfinite(run_out.front_chainage)) {
         plot.vertical(run_out.front_chainage, "toe-line");

@@ -36,7 +36,7 @@ std::vector<Quantity> quantities(const BothModels& models, const run::SecondOpin
     add("Front to chainage", "m", "f0", [](const auto& o) { return o.run_out.front_chainage; });
     add("Run-out along the flow", "m", "f0", [](const auto& o) { return o.run_out.along_flow; });
     add("Run-out in a straight line", "m", "f0", [](const auto& o) { return o.run_out.straight; });
-    add("Runout angle", "°", "f1", [](const auto& o) { return o.run_out.runout_angle * degrees_per_radian; });
+    add("Run-out angle", "°", "f1", [](const auto& o) { return o.run_out.runout_angle * degrees_per_radian; });
     all.push_back({"Affected area", "m²", "f0", opinion.area.both + opinion.area.only_first,
                    opinion.area.both + opinion.area.only_second});
     add("Deposit, area", "m²", "f0", [](const auto& o) { return o.deposit.area; });

@@ -46,8 +46,9 @@ Result<double> read_length(const std::string& file, const geo::PolygonLayer& lay
     }
     const std::optional<double> length = number_of(found->second);
     if (!length || !(*length > 0) || *length > attribute.most) {
-        return Error{fmt::format("{}: feature {} has {} = {}; it must be a {} above 0 to {:.0f} (m)", file, feature + 1,
-                                 attribute.name, attribute_text(found->second), attribute.what, attribute.most)};
+        return Error{fmt::format("{}: feature {} has {} = {}; it must be a {} greater than 0 and at most {:.0f} (m)",
+                                 file, feature + 1, attribute.name, attribute_text(found->second), attribute.what,
+                                 attribute.most)};
     }
     return *length;
 }

@@ -16,7 +16,7 @@ struct LengthAttribute {
 };
 
 /// The attribute of a feature, also from a text column that holds a number, m. Errors: no such attribute (lists the
-/// existing ones), not a number, not above 0 to `most`.
+/// existing ones), not a number, not greater than 0 and at most `most`.
 [[nodiscard]] Result<double> read_length(const std::string& file, const geo::PolygonLayer& layer, std::size_t feature,
                                          const LengthAttribute& attribute);
 

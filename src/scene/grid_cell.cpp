@@ -95,7 +95,7 @@ std::vector<std::string> depth_averaged_notes(const Scene& scene) {
     }
     std::vector<std::string> notes;
     if (!unused.empty()) {
-        notes.push_back(fmt::format("the depth-averaged model has no use for {}", fmt::join(unused, ", ")));
+        notes.push_back(fmt::format("the depth-averaged model does not use {}", fmt::join(unused, ", ")));
     }
     notes.push_back(fmt::format(
         "depth-averaged model on cells of {:.4g} m: one velocity over the depth; buildings and barriers are "
@@ -110,7 +110,7 @@ void note_unused_by_particles(Scene& scene) {
     const std::vector<std::string> unused = given_keys(scene, KeyUse::own);
     if (unused.empty()) return;
     scene.notes.push_back(
-        fmt::format("particles have no use for {}: only the depth-averaged model has", fmt::join(unused, ", ")));
+        fmt::format("particles do not use {}: only the depth-averaged model does", fmt::join(unused, ", ")));
 }
 
 Status check_depth_averaged(const ParsedScene& parsed, Scene& scene) {

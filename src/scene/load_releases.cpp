@@ -83,8 +83,8 @@ Status spread_volume(const params::ReleaseSpec& spec, const std::string& label, 
     const double thickness = slope_area > 0 ? *spec.volume / slope_area : 0;
     if (!(thickness > 0) || thickness > thickest()) {
         return Error{
-            fmt::format("{} of {:.6g} m3 over {:.6g} m2 of slope would be {:.6g} m thick; it must be above 0 to "
-                        "{:.0f} m",
+            fmt::format("{} of {:.6g} m3 over {:.6g} m2 of slope would be {:.6g} m thick; it must be greater than 0 "
+                        "and at most {:.0f} m",
                         label, *spec.volume, slope_area, thickness, thickest())};
     }
     for (terrain::ReleasePatch& patch : release.patches) patch.thickness = thickness;

@@ -137,7 +137,7 @@ Calibrations::Calibrations(std::shared_ptr<const scene::Scene> scene, Calibratio
                {"phase", nullptr},
                {"runs_at_most", 0},
                {"runs_failed", 0},
-               {"fast_runs", 0},
+               {"fast_runs", json::array()},
                {"fast_runs_at_most", 0},
                {"wall_remaining_s", nullptr},
                {"runs", json::array()},
@@ -288,7 +288,7 @@ void Calibrations::begin(const calibrate::CalibrationPlan& plan, const std::stri
     status_["phase"] = search_phase_name(calibrate::SearchPhase::design);
     status_["runs_at_most"] = plan.search.runs;
     status_["runs_failed"] = 0;
-    status_["fast_runs"] = 0;
+    status_["fast_runs"] = json::array();
     status_["fast_runs_at_most"] = plan.search.fast_runs;
     status_["runs"] = json::array();
     for (const char* none : {"wall_remaining_s", "map", "best", "result"}) status_[none] = nullptr;
@@ -297,12 +297,12 @@ void Calibrations::begin(const calibrate::CalibrationPlan& plan, const std::stri
 
 void Calibrations::take_run(const calibrate::CalibrationRun& run) {
     const std::lock_guard lock(mutex_);
-    if (run.fast) {
-        status_["fast_runs"] = status_["fast_runs"].get<std::size_t>() + 1;
-        return tell_now();
-    }
     json made = {
         {"values", run.values}, {"phase", search_phase_name(run.phase)}, {"misfit", number_or_null<json>(run.misfit)}};
+    if (run.fast) {
+        status_["fast_runs"].push_back(std::move(made));
+        return tell_now();
+    }
     if (std::isfinite(run.misfit)) {
         json& best = status_["best"];
         if (best.is_null() || run.misfit < best["misfit"].get<double>()) {

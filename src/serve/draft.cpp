@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cctype>
+#include <cmath>
+#include <limits>
 #include <system_error>
 #include <utility>
 
@@ -84,6 +86,17 @@ Result<fs::path> only_file(const std::string& name, const fs::path& folder) {
     if (found.empty()) return Error{name + ": there is no raster, no layer and no mesh in it"};
     return Error{fmt::format("{}: there are {} files in it, {} and {}; pack one of them with its companions", name,
                              found.size(), found[0].filename().string(), found[1].filename().string())};
+}
+
+/// Lowest and highest, m, by which a person sees whether feet were taken for metres.
+json elevation_range(const Grid<float>& grid) {
+    double low = std::numeric_limits<double>::infinity(), high = -low;
+    for (const float value : grid.values) {
+        if (!std::isfinite(value)) continue;
+        low = std::min(low, double{value});
+        high = std::max(high, double{value});
+    }
+    return low <= high ? json{low, high} : json();
 }
 
 geo::ForeignWanted wanted_for(std::string_view role) {
@@ -282,6 +295,7 @@ json Draft::describe() const {
                    {"crs", facts.crs},
                    {"metric_crs", facts.metric_crs},
                    {"value_unit", facts.value_unit},
+                   {"height_unit_m", facts.height_unit},
                    {"mending",
                     {{"epsg", mending_.epsg == 0 ? json() : json(mending_.epsg)},
                      {"metric", mending_.metric},
@@ -294,6 +308,7 @@ json Draft::describe() const {
             terrain["rows"] = g.rows;
             terrain["crs"] = terrain_->crs.label();
             terrain["nodata_share"] = terrain_->nodata_share;
+            terrain["elevation_m"] = elevation_range(terrain_->grid);
         }
     }
     return {{"files", files}, {"terrain", terrain}, {"bytes_left", bytes_left()}};

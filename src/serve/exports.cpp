@@ -4,10 +4,12 @@
 #include <fstream>
 #include <iterator>
 #include <system_error>
+#include <vector>
 
 #include <fmt/format.h>
 
 #include "core/try.hpp"
+#include "geo/longitude_latitude.hpp"
 #include "serve/api.hpp"
 #include "serve/json_text.hpp"
 
@@ -17,9 +19,12 @@ namespace {
 namespace fs = std::filesystem;
 using nlohmann::json;
 
+/// What a run must have for a file to be written.
+enum class Needs { nothing, erosion, gauges, globe };
+
 struct ExportFile {
     const char *name = nullptr, *type = nullptr, *what = nullptr;
-    bool of_erosion = false;  ///< written only if debris entrained anything
+    Needs needs = Needs::nothing;
 };
 
 // The files of a run; requested names are checked against these, so none leads out of the folder.
@@ -27,13 +32,17 @@ constexpr ExportFile export_files[] = {
     {"report.html", "text/html", "Report with maps, plots and tables, for the browser and for paper"},
     {"results.json", "application/json", "What the report shows, as data: key figures, tables, curves"},
     {"front.csv", "text/csv", "Front: chainage, first arrival, velocity"},
-    {"run_out.csv", "text/csv", "Run-out, drop, runout angle and travel angle"},
+    {"run_out.csv", "text/csv", "Run-out, drop, run-out angle and travel angle"},
     {"buildings.csv", "text/csv", "Impact per building"},
     {"structures_over_time.csv", "text/csv", "Impact per structure that was hit, over time"},
     {"timeseries.csv", "text/csv", "Front, volumes, energy and compression over time"},
     {"results.gpkg", "application/geopackage+sqlite3",
      "Release areas, buildings, intensity, flow path and front for a GIS"},
+    {"gauges.csv", "text/csv", "Depth and speed over time at every gauge", Needs::gauges},
     {"results.qlr", "application/xml", "Opens all layers in QGIS, styled"},
+    {"results.kml", "application/vnd.google-earth.kml+xml",
+     "Inundation, arrival times and structures hit, for Google Earth and phones", Needs::globe},
+    {"stac_item.json", "application/geo+json", "Place, time, software and files, for catalogues of geodata"},
     {"manifest.json", "application/json", "All parameters, versions, checksums and the result's hash"},
     {"peak_depth.tif", "image/tiff", "Peak flow depth, m"},
     {"peak_depth.qml", "application/xml", "QGIS style of it"},
@@ -47,17 +56,41 @@ constexpr ExportFile export_files[] = {
     {"deposit_depth.qml", "application/xml", "QGIS style of it"},
     {"intensity.tif", "image/tiff", "Classes of intensity after a guideline"},
     {"intensity.qml", "application/xml", "QGIS style of it"},
-    {"peak_thickness.tif", "image/tiff", "Peak flow thickness normal to the slope, m", true},
-    {"peak_thickness.qml", "application/xml", "QGIS style of it", true},
-    {"erosion_depth.tif", "image/tiff", "Depth of erosion of the bed, m", true},
-    {"erosion_depth.qml", "application/xml", "QGIS style of it", true},
-    {"erosion.csv", "text/csv", "Volume entrained from the bed against chainage", true},
+    {"peak_thickness.tif", "image/tiff", "Peak flow thickness normal to the slope, m", Needs::erosion},
+    {"peak_thickness.qml", "application/xml", "QGIS style of it", Needs::erosion},
+    {"erosion_depth.tif", "image/tiff", "Depth of erosion of the bed, m", Needs::erosion},
+    {"erosion_depth.qml", "application/xml", "QGIS style of it", Needs::erosion},
+    {"erosion.csv", "text/csv", "Volume entrained from the bed against chainage", Needs::erosion},
 };
 
 const ExportFile* find_file(const std::string& name) {
     const auto found = std::find_if(std::begin(export_files), std::end(export_files),
                                     [&](const ExportFile& f) { return name == f.name; });
     return found == std::end(export_files) ? nullptr : found;
+}
+
+/// Why a run has no such file; empty: it has one.
+std::string why_none(const ExportFile& file, const twin::Scenario& run) {
+    switch (file.needs) {
+        case Needs::nothing:
+            return "";
+        case Needs::erosion:
+            return run.has_erosion() ? "" : "nothing was entrained";
+        case Needs::gauges:
+            return run.scene().gauges.empty() ? "the scene has no gauges" : "";
+        case Needs::globe:
+            return geo::to_wgs84(run.scene().crs) ? ""
+                                                  : "the terrain's reference system is local, without a place on Earth";
+    }
+    return "";
+}
+
+std::vector<const ExportFile*> files_of(const twin::Scenario& run) {
+    std::vector<const ExportFile*> files;
+    for (const ExportFile& file : export_files) {
+        if (why_none(file, run).empty()) files.push_back(&file);
+    }
+    return files;
 }
 
 Response read_file(const fs::path& path, const ExportFile& file) {
@@ -121,15 +154,15 @@ void Exports::list(const std::string& scenario, const Respond& respond) {
         }
         const bool current = is_current(*index, all.at(*index));
         writer_->post([taken = current ? taken_[static_cast<std::size_t>(*index)] : nullptr,
-                       erosion = all.at(*index).has_erosion(), respond] {
+                       present = files_of(all.at(*index)), respond] {
             json files = json::array();
             const bool written = taken && !taken->products;
-            for (const ExportFile& file : export_files) {
-                if (file.of_erosion && !erosion) continue;
+            for (const ExportFile* file : present) {
                 std::error_code error;
-                const auto bytes = written ? fs::file_size(taken->folder / file.name, error) : 0;
+                const auto bytes = written ? fs::file_size(taken->folder / file->name, error) : 0;
                 if (error) continue;  // this run has none
-                files.push_back({{"name", file.name}, {"bytes", written ? json(bytes) : json()}, {"what", file.what}});
+                files.push_back(
+                    {{"name", file->name}, {"bytes", written ? json(bytes) : json()}, {"what", file->what}});
             }
             respond(json_response(200, {{"files", files}}));
         });
@@ -150,8 +183,8 @@ void Exports::file(const std::string& scenario, const std::string& name, const R
         }
         SnapshotPtr& taken = taken_[static_cast<std::size_t>(*index)];
         const twin::Scenario& run = all.at(*index);
-        if (wanted->of_erosion && !run.has_erosion()) {
-            respond(error_response(404, fmt::format("there is no {}: nothing was entrained", wanted->name)));
+        if (const std::string why = why_none(*wanted, run); !why.empty()) {
+            respond(error_response(404, fmt::format("there is no {}: {}", wanted->name, why)));
             return;
         }
         if (!is_current(*index, run)) {

@@ -228,7 +228,7 @@ void take_progress(Job& job, const json& event) {
         count_of("failed", failed);
         count_of("known_failures", announced);
         count_of("skipped_cases", skipped);
-        job.message = fmt::format("{} values pass, {} fail, {} fail as announced", passed, failed, announced);
+        job.message = fmt::format("{} values pass, {} fail, {} known failures", passed, failed, announced);
         if (skipped > 0) job.message += fmt::format("; {} cases were skipped, their data are missing", skipped);
     }
 }

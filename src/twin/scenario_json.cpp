@@ -1,4 +1,5 @@
 // The scenario's answers, as docs/protocol.md has them.
+#include <algorithm>
 #include <cmath>
 #include <cstdlib>
 #include <filesystem>
@@ -11,6 +12,7 @@
 #include "geo/latitude.hpp"
 #include "report/intensity.hpp"
 #include "run/verdict.hpp"
+#include "scene/depth_averaged_keys.hpp"
 #include "scene/viscosity_limit.hpp"
 #include "twin/gauges_json.hpp"
 #include "twin/json_keys.hpp"
@@ -67,6 +69,7 @@ json live_parameters_json(const scene::Scene& scene, const sim::Model& model, co
              {"default", number_or_null<json>(value_in_force(scene.spec.material, *parameter, scene_viscosity))},
              {"range", range_json(range_in(scene, *parameter))},
              {"help", parameter->help},
+             {"used_by_depth_averaged", !scene::for_particles_only("material." + parameter->key)},
              {"value", number_or_null<json>(value_in_force(now, *parameter, model.viscosity))}});
     }
     return list;
@@ -208,6 +211,17 @@ json Scenario::scene_json() const {
             {"intensity", intensity_json(guideline_of(scene))}};
 }
 
+namespace {
+
+/// Largest speed of the run so far: of the recorded rows and now, so that it is the same whoever asks and when.
+double peak_speed(const observe::Observer& observer, const sim::State& state) {
+    double peak = state.max_speed;
+    for (const observe::TimeSample& row : observer.timeseries()) peak = std::max(peak, row.largest_speed);
+    return peak;
+}
+
+}  // namespace
+
 json Scenario::state_json(bool with_hash) const {
     const LiveRun& run = *parts_->run;
     const sim::State& state = run.state();
@@ -234,6 +248,7 @@ json Scenario::state_json(bool with_hash) const {
                    {"front_chainage_m", number_or_null<json>(now.front_chainage)},
                    {"front_velocity_mps", advances ? number_or_null<json>(front.back().front_velocity) : json()},
                    {"largest_speed_mps", number_or_null<json>(state.max_speed)},
+                   {"peak_speed_mps", number_or_null<json>(peak_speed(run.observer(), state))},
                    {"mean_compression", number_or_null<json>(state.mean_compression)},
                    {"max_compression", number_or_null<json>(state.max_compression)},
                    {"squeezed_share", number_or_null<json>(state.squeezed_share)},

@@ -8,6 +8,7 @@ import { existsSync, Run, waitedFor, within } from "./twin/harness.mjs";
 import { testBackanalysis } from "./twin/backanalysis.mjs";
 import { testBarrier } from "./twin/barrier.mjs";
 import { testDepthAveraged } from "./twin/depth_averaged.mjs";
+import { testDrawing } from "./twin/drawing.mjs";
 import { testErosion } from "./twin/erosion.mjs";
 import { testLook } from "./twin/look.mjs";
 import { testGround } from "./twin/ground.mjs";
@@ -46,7 +47,7 @@ setTimeout(() => {
 }, 1_100_000).unref();
 const run = new Run(browser, resolve(output), command, process.env.TALUS_ONLY);
 const parts = { controls: testControls, readings: testReadings, restart: testRestart, scenarios: testScenarios, barrier: testBarrier, parts: testParts, erosion: testErosion, ground: testGround, look: testLook, photo: testPhoto,
-  backanalysis: testBackanalysis, depth_averaged: testDepthAveraged, sharing: testSharing, start: testStart, triggers: testTriggers };
+  backanalysis: testBackanalysis, depth_averaged: testDepthAveraged, drawing: testDrawing, sharing: testSharing, start: testStart, triggers: testTriggers };
 try {
   for (const part of (process.env.TALUS_PARTS ?? Object.keys(parts).join()).split(",")) {
     if (!parts[part]) throw new Error(`TALUS_PARTS names ${part}; there are ${Object.keys(parts).join(", ")}`);

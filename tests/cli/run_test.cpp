@@ -39,7 +39,7 @@ TEST(Run, WritesEveryProductAndSaysWhereTheReportIs) {
     EXPECT_THAT(outcome.out, HasSubstr("talus_out/slope/report.html"));
     EXPECT_THAT(outcome.out, HasSubstr("at 5 m: "));
     EXPECT_THAT(outcome.out, HasSubstr("observed 3 m/s"));
-    EXPECT_THAT(outcome.out, HasSubstr("runout angle"));
+    EXPECT_THAT(outcome.out, HasSubstr("run-out angle"));
     EXPECT_THAT(outcome.out, HasSubstr("x real time"));
     EXPECT_THAT(outcome.out, Not(HasSubstr("PARTIAL")));
     EXPECT_THAT(lines_of(outcome.error), testing::Contains("writing maps, tables and report"));

@@ -190,8 +190,8 @@ TEST(FieldTable, TiesOfAKeyAreRules) {
     barrier.thickness = 0.6;
     EXPECT_EQ(broken("barrier", 1.2), "");
     EXPECT_EQ(broken("barrier", 1.3),
-              "thickness_m = 0.6 is refused; with particles of 1.3 m it must be at least 0.65 m: debris on both sides "
-              "would feel each other through it");
+              "thickness_m = 0.6 is refused; with particles of 1.3 m it must be at least 0.65 m: thinner walls let "
+              "debris interact across them");
     barrier.clearance = 2;
     EXPECT_EQ(broken("barrier", 0), "clearance_m = 2 is refused; it must be below height_m = 2");
     barrier.height.reset();

@@ -281,7 +281,7 @@ TEST_F(DepthAveragedRun, shows_its_debris_over_time) {
 
 TEST_F(DepthAveragedRun, notes_keys_that_mean_nothing_to_it) {
     const scene::Scene scene = loaded("[material]\nviscosity = 0.2\n");
-    EXPECT_THAT(scene.notes, testing::Contains(HasSubstr("has no use for material.viscosity")));
+    EXPECT_THAT(scene.notes, testing::Contains(HasSubstr("does not use material.viscosity")));
 }
 
 TEST_F(DepthAveragedRun, is_refused_where_particles_are_needed) {

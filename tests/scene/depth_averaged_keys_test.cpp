@@ -70,7 +70,7 @@ TEST_F(DepthAveragedScene, notes_every_key_that_means_something_to_particles_onl
             {"solver.model=depth_averaged", key + "=" + another_value(section, *section.find(key.substr(dot + 1)))});
         ASSERT_TRUE(scene) << scene.error().message;
         EXPECT_THAT(scene->notes,
-                    Contains(testing::AllOf(HasSubstr("the depth-averaged model has no use for"), HasSubstr(key))));
+                    Contains(testing::AllOf(HasSubstr("the depth-averaged model does not use"), HasSubstr(key))));
         tried.push_back(key);
     }
     EXPECT_GT(tried.size(), 20U);
@@ -85,22 +85,22 @@ TEST_F(DepthAveragedScene, notes_every_key_that_means_nothing_to_particles) {
     for (const DepthAveragedKey& entry : depth_averaged_keys()) {
         if (entry.use != KeyUse::own) continue;
         EXPECT_TRUE(for_depth_averaged_only(entry.key));
-        EXPECT_THAT(scene->notes, Contains(testing::AllOf(HasSubstr("particles have no use for"),
-                                                          HasSubstr(std::string(entry.key)))));
+        EXPECT_THAT(scene->notes,
+                    Contains(testing::AllOf(HasSubstr("particles do not use"), HasSubstr(std::string(entry.key)))));
     }
-    EXPECT_THAT(grid->notes, testing::Each(Not(HasSubstr("no use for"))));
+    EXPECT_THAT(grid->notes, testing::Each(Not(HasSubstr("not use "))));
     EXPECT_THAT(grid->notes, testing::Each(Not(HasSubstr("no falls"))));
     write_valley("");
     const auto without = load_scene(folder / "scene.toml");
     ASSERT_TRUE(without);
-    EXPECT_THAT(without->notes, testing::Each(Not(HasSubstr("no use for"))));
+    EXPECT_THAT(without->notes, testing::Each(Not(HasSubstr("not use "))));
     // The depth-averaged run that feeds a zoom has a use for them.
     write_valley(keys + fmt::format("[[barrier]]\nname = \"dam\"\nline_m = [[{0}, {1}], [{0}, {2}]]\nheight_m = 5\n"
                                     "[zoom]\nstructure = \"dam\"\n",
                                     west + 150, south + 60, south + 140));
     const auto zoom = load_scene(folder / "scene.toml");
     ASSERT_TRUE(zoom) << zoom.error().message;
-    EXPECT_THAT(zoom->notes, testing::Each(Not(HasSubstr("no use for"))));
+    EXPECT_THAT(zoom->notes, testing::Each(Not(HasSubstr("not use "))));
 }
 
 TEST_F(DepthAveragedScene, refuses_what_the_model_lacks) {

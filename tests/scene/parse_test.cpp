@@ -102,8 +102,10 @@ TEST_F(ParseScene, WrongTypesNameKeyValueAndKind) {
     EXPECT_THAT(error_after("[scene]\nreconstruction = 1\n"), EndsWith("it must be true or false"));
     EXPECT_THAT(error_after("[scene]\nsources = \"one\"\n"), EndsWith("a list of texts in quotes"));
     EXPECT_THAT(error_after("[scene]\nsources = [1]\n"), EndsWith("a list of texts in quotes"));
-    EXPECT_THAT(error_after("[solver]\nend_time_s = [1]\n"), EndsWith("a number above 0 to 10000000 (s)"));
-    EXPECT_THAT(error_after("[solver]\nend_time_s = 2020-01-01\n"), EndsWith("a number above 0 to 10000000 (s)"));
+    EXPECT_THAT(error_after("[solver]\nend_time_s = [1]\n"),
+                EndsWith("a number greater than 0 and at most 10000000 (s)"));
+    EXPECT_THAT(error_after("[solver]\nend_time_s = 2020-01-01\n"),
+                EndsWith("a number greater than 0 and at most 10000000 (s)"));
 }
 
 TEST_F(ParseScene, ValuesOutOfRangeNameTheRange) {

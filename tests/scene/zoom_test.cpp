@@ -80,7 +80,7 @@ TEST_F(ZoomOfScene, is_named_in_a_note_where_it_is_not_used) {
     write_zoom("structure = \"dam\"");
     const auto grid = loaded({"solver.model=depth_averaged"});
     EXPECT_FALSE(grid.zoom);
-    EXPECT_THAT(grid.notes, testing::Contains(HasSubstr("no use for zoom.structure")));
+    EXPECT_THAT(grid.notes, testing::Contains(HasSubstr("not use zoom.structure")));
     auto scene = loaded();
     leave_out_zoom(scene, "the live twin");
     EXPECT_FALSE(scene.zoom);

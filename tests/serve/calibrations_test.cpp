@@ -103,11 +103,13 @@ TEST_F(CalibrationsTest, searches_with_the_depth_averaged_model) {
     EXPECT_EQ(begun.json()["done"],
               "calibration of friction coefficient, viscosity with at most 3 runs and 100 of the depth-averaged model");
     json now = status();
-    for (int i = 0; i < 1200 && now["fast_runs"] < 2; ++i) {
+    for (int i = 0; i < 1200 && now["fast_runs"].size() < 2; ++i) {
         std::this_thread::sleep_for(std::chrono::milliseconds(50));
         now = status();
     }
-    EXPECT_GE(now["fast_runs"], 2);
+    EXPECT_GE(now["fast_runs"].size(), 2U);
+    EXPECT_EQ(now["fast_runs"][0]["phase"], "design");
+    EXPECT_EQ(now["fast_runs"][0]["values"].size(), 2U) << "a dot on the map";
     EXPECT_EQ(now["fast_runs_at_most"], 100);
     EXPECT_EQ(now["runs"].size(), 0U) << "particles wait for the fast model's design";
     EXPECT_EQ(as_controller().ask("DELETE", "/api/calibration").status, 200);

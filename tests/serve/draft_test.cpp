@@ -151,6 +151,40 @@ TEST_F(NewScenePage, says_what_is_wrong_with_a_terrain_and_mends_it) {
     EXPECT_THAT(kept(), Not(testing::Contains("feet.tif"))) << "the mended terrain takes its place";
 }
 
+TEST_F(NewScenePage, proposes_the_unit_of_heights_that_the_reference_system_has_and_shows_their_range) {
+    // New York Long Island, US survey feet; heights of 300 to 400 in the same.
+    RasterOptions options = SmallScene::terrain();
+    options.epsg = 2263;
+    options.x_min = 1000000;
+    options.y_min = 200000;
+    options.cell = 15;
+    const std::string feet =
+        write_raster(scene_.input("plane.tif"), options, [](int column, int) { return 300 + 100.0 * column / 59; });
+    const json before = put_file("terrain", feet).json()["terrain"];
+    EXPECT_THAT(before["problem"].dump(), HasSubstr("a CRS in metres is needed"));
+    EXPECT_NEAR(before["height_unit_m"], 1200.0 / 3937, 1e-9);
+    const json after = client_->post(draft_ + "/mend", {{"metric", true}, {"metres_per_unit", before["height_unit_m"]}})
+                           .json()["terrain"];
+    EXPECT_TRUE(after["problem"].is_null()) << after;
+    EXPECT_NEAR(after["elevation_m"][0], 300 * 0.3048, 0.5);
+    EXPECT_LT(after["elevation_m"][1], 401 * 0.3048);
+    // In metres nothing is proposed.
+    EXPECT_EQ(put_file("terrain", scene_.input("terrain.tif")).json()["terrain"]["height_unit_m"], 1);
+}
+
+TEST_F(NewScenePage, squares_oblong_cells_in_the_system_of_the_terrain) {
+    RasterOptions options = SmallScene::terrain();
+    options.cell_height = 1.25 * options.cell;
+    const json before = put_file("terrain", write_plane(scene_.input("oblong.tif"), options)).json()["terrain"];
+    EXPECT_THAT(before["problem"].dump(), HasSubstr("square ones are needed"));
+    EXPECT_EQ(before["metric_crs"], "EPSG:2326");
+    const json after = client_->post(draft_ + "/mend", {{"metric", true}}).json()["terrain"];
+    EXPECT_TRUE(after["problem"].is_null()) << after;
+    EXPECT_THAT(after["crs"].dump(), HasSubstr("EPSG:2326"));
+    EXPECT_NEAR(after["cell_m"], options.cell, 1e-6);
+    EXPECT_NEAR(after["rows"], 1.25 * before["rows"].get<double>(), 1.01);
+}
+
 TEST_F(NewScenePage, says_that_a_release_lies_outside_and_takes_a_raster_of_thickness) {
     put_file("terrain", scene_.input("terrain.tif"));
     const std::string far =

@@ -3,6 +3,8 @@
 #include <set>
 #include <thread>
 
+#include <gmock/gmock.h>
+
 #include "serve/schema.hpp"
 #include "serve/serve_fixture.hpp"
 #include "support/photo.hpp"
@@ -291,6 +293,26 @@ TEST_F(OpenApi, exports_are_of_the_run_so_far) {
     const Answer none = eye.get("/api/scenarios/A/exports/erosion_depth.tif");
     EXPECT_EQ(none.status, 404);
     EXPECT_NE(none.body.find("nothing was entrained"), std::string::npos);
+}
+
+TEST_F(OpenApi, exports_have_the_files_of_a_run_for_other_readers) {
+    const auto get = [&](const std::string& name) { return as_viewer().get("/api/scenarios/A/exports/" + name); };
+    const Answer none = get("gauges.csv");
+    EXPECT_EQ(none.status, 404);
+    EXPECT_NE(none.body.find("the scene has no gauges"), std::string::npos);
+    scene_.replace("[[observation]]", "[[gauge]]\nname = \"Bridge\"\nchainage_m = 5\n\n[[observation]]");
+    start();
+    act({{"action", "step"}});
+    EXPECT_NE(get("gauges.csv").body.find("Bridge"), std::string::npos);
+    EXPECT_EQ(get("stac_item.json").json()["type"], "Feature");
+    EXPECT_NE(get("results.kml").body.find("<kml"), std::string::npos);
+    std::vector<std::string> listed;
+    for (const json& file : as_viewer().get("/api/scenarios/A/exports").json()["files"]) {
+        EXPECT_GT(file["bytes"], 0) << file;
+        listed.push_back(file["name"]);
+    }
+    for (const char* name : {"gauges.csv", "stac_item.json", "results.kml"})
+        EXPECT_THAT(listed, ::testing::Contains(name));
 }
 
 }  // namespace

@@ -160,7 +160,7 @@ TEST(DepthAveragedBeside, a_net_is_refused_in_a_sentence_and_unused_values_are_n
                     {"polygon", ring(west + 20, south + 28, west + 24, south + 32)},
                     {"thickness_m", 1}});
     EXPECT_THAT(text_of(run_of(*scenario).notes),
-                testing::AllOf(HasSubstr("no use for material.viscosity."), HasSubstr("one velocity over the depth"),
+                testing::AllOf(HasSubstr("not use material.viscosity."), HasSubstr("one velocity over the depth"),
                                HasSubstr("Release \"second\" waits to be started")));
 }
 

@@ -210,7 +210,7 @@ TEST(Barrier, refuses_lines_that_make_no_wall) {
     };
     const auto at = [](double x, double y) { return json{west + x, south + y}; };
     EXPECT_THAT(refusal(*scenario, with("height_m", 0)),
-                HasSubstr("height_m = 0: must be a number above 0 to 200 (m)"));
+                HasSubstr("height_m = 0: must be a number greater than 0 and at most 200 (m)"));
     EXPECT_THAT(refusal(*scenario, with("thickness_m", 0.1)),
                 HasSubstr("thickness_m = 0.1 is refused; with particles of 0.6 m it must be at least 0.3 m"));
     EXPECT_THAT(refusal(*scenario, with("line", {at(50, 20)})), HasSubstr("must be 2 to 500 points"));

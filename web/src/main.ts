@@ -2,6 +2,7 @@ import "./style/base.css";
 import "./style/layout.css";
 import "./style/panels.css";
 import "./style/view.css";
+import "./style/touch.css";
 import { Api, Refused } from "./protocol/api";
 import { takeToken } from "./protocol/token";
 import { h } from "./ui/dom";

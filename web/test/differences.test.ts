@@ -4,7 +4,7 @@ import { comparisonRows, differenceText, type Side } from "../src/state/comparis
 import { changesText, differences } from "../src/state/differences";
 
 const parameter = (key: string, label: string, unit = ""): Parameter =>
-  ({ key: `material.${key}`, label, unit, default: null, value: null, range: { low: null, high: null, low_included: true, high_included: true }, help: "" });
+  ({ key: `material.${key}`, label, unit, default: null, value: null, range: { low: null, high: null, low_included: true, high_included: true }, used_by_depth_averaged: true, help: "" });
 const parameters = [parameter("friction_coefficient", "friction coefficient"), parameter("building_friction_coefficient", "building friction coefficient"),
   parameter("cohesion_kPa", "cohesion", "kPa")];
 const setup = (scenario: "A" | "B", friction: number, more: Partial<Setup> = {}): Setup => ({ scenario, name: "", changes: [], revision: 1,

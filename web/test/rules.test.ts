@@ -9,7 +9,7 @@ describe("rules of the field table", () => {
     expect(leastOf("barrier_opening", "width_m", scene)).toBe(2.5);
     const thickness = limitsOf("barrier", "thickness_m", scene, {});
     expect(thickness.low).toBe(0.625);
-    expect(thickness.hint).toMatch(/^At least 0\.625 m: debris on both sides/);
+    expect(thickness.hint).toBe("Minimum 0.625 m; thinner walls let debris interact across them.");
     expect(thickness.hindrance).toBeNull();
     expect(limitsOf("barrier", "thickness_m", { ...scene, particle_spacing_m: 1e-5 }, {}).low).toBeCloseTo(0.001, 9);
   });

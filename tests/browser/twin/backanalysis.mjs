@@ -100,7 +100,7 @@ async function testCalibration(run, server, page) {
     await until(focused, (text) => text === "Cancel", "the focus goes on to what takes the place of the button");
     assert.equal((await status()).state, "running");
     await until(() => page.textContent(".calibrate-progress"), (t) => /^\d+ of at most 100 runs depth-averaged, 0 of at most 10 runs of particles/.test(t), "both models are counted");
-    await until(async () => (await status()).fast_runs, (n) => n >= 2, "runs of the fast model");
+    await until(async () => (await status()).fast_runs.length, (n) => n >= 2, "runs of the fast model");
     assert.equal((await status()).runs.length, 0, "particles wait for the fast model's design");
     await page.keyboard.press("Enter");
     const end = await until(async () => (await status()).state, (state) => state !== "running" && state !== "cancelling", "an end");

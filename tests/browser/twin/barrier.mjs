@@ -83,7 +83,7 @@ export async function testBarrier(run) {
     assert.ok(s.front_chainage_m === null || s.front_chainage_m < chainage + 3, `the front is at ${s.front_chainage_m} m`);
     const told = await row();
     assert.ok(told.Force > 10, JSON.stringify(told));
-    assert.equal(told.Over, 0);
+    assert.equal(told.Overtopped, 0);
     assert.ok(told.Retained > 0.5 * s.volume_released_m3, `${told.Retained} of ${s.volume_released_m3} m3 are retained`);
     const seen = await run.colours(page, await viewClip(page));
     assert.ok(seen.different > 1000);
@@ -99,14 +99,14 @@ export async function testBarrier(run) {
     await restart();
     await play();
     const told = await row();
-    assert.ok(told.Over > 1, JSON.stringify(told));
+    assert.ok(told.Overtopped > 1, JSON.stringify(told));
     assert.ok((await state()).front_chainage_m > chainage + 5);
     await page.locator(".impacts").first().locator("tbody th button").first().click();
     await page.click(".editor button:has-text('Remove')");
     await until(setup, (s) => s.barriers.length === 0, "removed");
     const gone = page.locator(".removed li");
     await until(() => gone.count(), (n) => n === 1, "the one that was taken away");
-    assert.match(await gone.textContent(), /until [\d.]+ s: .*kPa.*kN.*m³ went over it/);
+    assert.match(await gone.textContent(), /until [\d.]+ s: .*kPa.*kN.*m³ overtopped it/);
     const report = await server.text("scenarios/A/exports/report.html");
     assert.match(report, /Removed during the run: barrier \d+ at /);
     await restart();

@@ -192,7 +192,7 @@ export async function testControls(run) {
     await page.click("[data-draw=barrier]");
     const field = page.locator(".draft:visible .field", { hasText: "Thickness" });
     const hint = await field.locator(".hint").textContent();
-    assert.match(hint, /^At least [\d.]+ m: debris on both sides would feel each other through it\.$/);
+    assert.match(hint, /^Minimum [\d.]+ m; thinner walls let debris interact across them\.$/);
     const least = Number(hint.match(/[\d.]+/)[0]);
     assert.ok(Math.abs(least - particle_spacing_m / 2) < 0.01, `${least} m with particles of ${particle_spacing_m} m`);
     const number = field.locator("input[type=number]");

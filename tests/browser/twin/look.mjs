@@ -1,4 +1,7 @@
 // The natural look, on a server of its own: bright and dark enough at every hour, and away with a key.
+import { mkdirSync } from "node:fs";
+import { join } from "node:path";
+import { writeGully } from "./gully.mjs";
 import { assert, boxOf, inControl, saved, until } from "./harness.mjs";
 
 /** Light and colours of a picture: shares of nearly white and nearly black pixels, mean lightness of 255, mean of red over blue. */
@@ -31,6 +34,25 @@ async function differing(pictures) {
   let count = 0;
   for (let k = 0; k < a.length; k += 4) count += Math.abs(a[k] - b[k]) + Math.abs(a[k + 1] - b[k + 1]) + Math.abs(a[k + 2] - b[k + 2]) > 24;
   return count / (a.length / 4);
+}
+
+/** Level ground at 0 m is the sea. */
+async function testSea(run) {
+  const folder = join(run.output, "sea");
+  mkdirSync(folder, { recursive: true });
+  const server = await run.start([], { scene: writeGully(folder, true), particles: null });
+  const page = await run.open(server.controller, { name: "Sol", look: "natural", width: 740, height: 500 });
+  await run.check("the sea is drawn as water, not as lawn", async () => {
+    await page.click("[aria-label='Top view']");
+    await page.locator("label:has-text('Names') input").uncheck();
+    const box = await boxOf(page.locator(".stage canvas"));
+    // The terrain is 100 m by 50 m in the middle of the plan: its last third to the east is level.
+    const metre = box.width / 100;
+    await until(async () => (await run.colours(page, { x: box.x + 0.5 * box.width + 18 * Math.min(metre, 3), y: box.y + 0.55 * box.height, width: 30, height: 30 })).bluish, (share) => share > 0.9, "blue");
+    await run.shot(page, "61-sea");
+  });
+  await page.context().close();
+  await server.stop();
 }
 
 export async function testLook(run) {
@@ -120,11 +142,11 @@ export async function testLook(run) {
 
   await run.check("a briefing is a film that plays: as long as the flow at its speed, with its captions", async () => {
     await page.keyboard.press("n"); // far sooner drawn
-    await page.click("[aria-label='Briefing']");
+    await page.click("[aria-label='Fly-through video']");
     await page.selectOption("[aria-label='Speed of the film']", "10");
     await page.locator("label:has-text('whole scene') input").uncheck();
-    const film = await saved(page, () => page.click("dialog button:has-text('Make the film')"));
-    assert.match(film.name, /-briefing\.webm$/);
+    const film = await saved(page, () => page.click("dialog button:has-text('Make the video')"));
+    assert.match(film.name, /-fly-through\.webm$/);
     await page.locator("dialog").waitFor({ state: "detached" });
     const player = await (await run.browser.newContext()).newPage();
     const seen = await player.evaluate(playFilm, film.bytes.toString("base64"));
@@ -139,6 +161,7 @@ export async function testLook(run) {
   });
   await page.context().close();
   await own.stop();
+  await testSea(run);
 }
 
 /** Plays a film: its size, and how its first, middle and last picture look; captions are white on dark along the lower edge. */

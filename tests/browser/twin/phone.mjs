@@ -48,12 +48,21 @@ const faint = (page) => page.evaluate(() => {
     return [255, 255, 255];
   };
   return [...document.querySelectorAll("body *")].filter((e) => [...e.childNodes].some((n) => n.nodeType === 3 && n.textContent.trim() !== "")
-    && e.checkVisibility({ visibilityProperty: true }) && !e.closest("script, option, :disabled, .unseen, .label.house, .label.chainage, .person")).flatMap((e) => {
+    && e.checkVisibility({ visibilityProperty: true }) && !e.closest("script, option, :disabled, .unseen, .label.house, .label.chainage")).flatMap((e) => {
     const [a, b] = [light(read(getComputedStyle(e).color)), light(ground(e))];
     const contrast = (Math.max(a, b) + 0.05) / (Math.min(a, b) + 0.05);
     return contrast < 4.5 ? [`${e.className} "${e.textContent.slice(0, 30)}": ${contrast.toFixed(2)}`] : [];
   });
 });
+
+/** Controls that are smaller than a finger needs; a tick box has its label, and what stands in a line of text has room around it. */
+const small = (page) => page.evaluate(() => [...document.querySelectorAll("#page button, #page select, #page input, #page summary, #page a.button")]
+  .filter((e) => e.checkVisibility({ visibilityProperty: true }) && !e.closest(".handle, .alarm-mark, thead, .unseen"))
+  .flatMap((e) => {
+    const own = /checkbox|radio/.test(e.type) ? e.closest("label, .free, .choice, .field, .optional") ?? e : e;
+    const { width, height } = own.getBoundingClientRect();
+    return height < 43.5 || (width < 43.5 && !e.matches("input")) ? [`${own.className} ${own.getAttribute("aria-label") ?? own.textContent.slice(0, 30)}: ${width.toFixed(0)} x ${height.toFixed(0)}`] : [];
+  }));
 
 export async function testPhone(run, server) {
   const page = await run.open(server.viewer, { width: 390, height: 844, name: "Eve", touch: true });
@@ -131,6 +140,19 @@ export async function testPhone(run, server) {
     await tap(page, ".setup-switch", async () => !(await setup.isVisible()));
     await page.setViewportSize({ width: 390, height: 844 });
     await until(() => page.locator(".stage canvas").boundingBox(), (box) => box.width < 400, "upright again");
+  });
+
+  await run.check("every control is as large as a finger needs, and the button to share has its name", async () => {
+    assert.equal(await page.getByRole("button", { name: "Share", exact: true }).count(), 1);
+    assert.deepEqual(await small(page), []);
+    await tap(page, ".sheet-handle", expanded(page, ".sheet-handle", true));
+    assert.deepEqual(await small(page), []);
+    await tap(page, ".sheet-handle", expanded(page, ".sheet-handle", false));
+    const setup = page.locator(".controls .scenarios");
+    await tap(page, ".setup-switch", () => setup.isVisible());
+    assert.deepEqual(await small(page), []);
+    await run.shot(page, "55-setup");
+    await tap(page, ".setup-switch", async () => !(await setup.isVisible()));
   });
 
   await run.check("light and dark follow the system, and every text can be read in both", async () => {

@@ -215,7 +215,7 @@ export async function testScenarios(run) {
     await until(() => page.textContent(".status"), (t) => t === "End reached", "the end");
     const line = await page.locator(".timeline").boundingBox();
     await page.mouse.click(line.x + 0.4 * line.width, line.y + 0.5 * line.height);
-    await until(() => page.textContent(".status"), (t) => t === "Recording", "the recording");
+    await until(() => page.textContent(".status"), (t) => t === "Playback", "the recording");
     await until(() => page.locator(".run-message:visible").count(), (n) => n === 0, "no message of the end");
     await until(() => page.textContent(".compression"), (t) => / at [\d.]+ s$/.test(t), "the verdict names its time");
     await page.click(".live");

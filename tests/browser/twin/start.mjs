@@ -81,7 +81,7 @@ export async function testStart(run) {
     await map.scrollIntoViewIfNeeded();
     const { width, height } = await map.boundingBox();
     for (const [u, v] of [[0.55, 0.4], [0.65, 0.4], [0.65, 0.55], [0.55, 0.55], [0.55, 0.4]]) await map.click({ position: { x: u * width, y: v * height } });
-    await page.locator("text=This can be run").waitFor();
+    await page.locator("text=Ready to run").waitFor();
     assert.equal(await page.inputValue("[aria-label='Title of the scene']"), "west slope");
     await page.click("text=Volume");
     await page.fill("[aria-label='Thickness or volume']", "500");
@@ -151,7 +151,7 @@ export async function testStart(run) {
     await page.locator("[data-case=free_fall]").check();
     await page.click(".new-job .primary");
     const waiting = page.locator("[data-job=validation-1]");
-    await waiting.locator("text=Waits for the job before it").waitFor();
+    await waiting.locator("text=Waiting for another job").waitFor();
     await page.click("[data-job=calibration-1] >> text=Cancel");
     await page.locator("[data-job=calibration-1][data-state=cancelled]").waitFor();
     await page.locator("[data-job=validation-1][data-state=done]").waitFor();

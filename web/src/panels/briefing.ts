@@ -20,19 +20,19 @@ const bitrate = 8_000_000;
 const widest_px = 1920;
 
 export function briefingButton(twin: Twin, stage: Stage, picture: Picture): HTMLElement {
-  return button("Briefing", { icon: "film", bare: true, title: "Briefing: a film along the flow path, with captions (WebM)", onclick: () => open(twin, stage, picture) });
+  return button("Fly-through video", { icon: "film", bare: true, title: "Fly-through video along the flow path, with captions (WebM)", onclick: () => open(twin, stage, picture) });
 }
 
 function open(twin: Twin, stage: Stage, picture: Picture): void {
-  const speed = h("select", { "aria-label": "Speed of the film" }, ...speeds.map(([value, name]) => h("option", { value }, name)));
+  const speed = h("select", { "aria-label": "Speed of the video" }, ...speeds.map(([value, name]) => h("option", { value }, name)));
   speed.value = "1";
   const overviews = h("input", { type: "checkbox", checked: true });
-  const progress = h("progress", { max: "1", value: "0", "aria-label": "Share of the film that is made" });
+  const progress = h("progress", { max: "1", value: "0", "aria-label": "Progress of the video" });
   progress.hidden = true;
   const said = h("p", { class: "hint", role: "status" });
   let stopped = false;
   const last_s = twin.now.state.value?.recording.last_s ?? 0;
-  const make = button("Make the film", { class: "primary", icon: "film", onclick: () => {
+  const make = button("Make the video", { class: "primary", icon: "film", onclick: () => {
     make.disabled = speed.disabled = overviews.disabled = true;
     progress.hidden = false;
     void twin.attempt(async () => {
@@ -42,17 +42,17 @@ function open(twin: Twin, stage: Stage, picture: Picture): void {
         return !stopped;
       });
       if (film) {
-        save(`${picture.fileName}-briefing.webm`, film);
-        twin.notice("Film saved", "done");
+        save(`${picture.fileName}-fly-through.webm`, film);
+        twin.notice("Video saved", "done");
       }
     }).then(() => element.close());
   } });
   const why = last_s < 0.2 ? "Nothing is recorded yet: run the simulation first."
     : twin.running ? "Pause the run first."
-    : !("VideoEncoder" in window) ? "This browser makes films only at https:// and localhost addresses." : "";
+    : !("VideoEncoder" in window) ? "This browser makes videos only at https:// and localhost addresses." : "";
   make.disabled = why !== "";
-  const element = dialog("Briefing", h("p", { class: "hint" }, "The camera follows the front along the flow path, in the present look, with captions of time, front velocity and what is hit."),
-    why === "" ? null : h("p", { class: "hint" }, why), h("label", { class: "check" }, overviews, "Begin and end with the whole scene"), h("div", { class: "row" }, speed, make), progress, said);
+  const element = dialog("Fly-through video", h("p", { class: "hint" }, "The camera follows the front along the flow path, in the present look, with captions of time, front velocity and what is hit."),
+    why === "" ? null : h("p", { class: "hint" }, why), h("label", { class: "check" }, overviews, "Start and end with the whole scene"), h("div", { class: "row" }, speed, make), progress, said);
   element.addEventListener("close", () => (stopped = true));
   openDialog(element);
 }

@@ -2,7 +2,7 @@
 import type { CalibrationStatus } from "../protocol/messages";
 import { watchAll } from "../state/cell";
 import { number, quantity, unitText } from "../state/format";
-import { freeAtFirst, progressText } from "../state/misfit";
+import { progressText, runsAfterChoice, startsFree } from "../state/misfit";
 import type { Twin } from "../state/twin";
 import { button, h } from "../ui/dom";
 import { capital, rangeRow, rangesOf } from "../ui/range_row";
@@ -44,17 +44,29 @@ function warnings(status: CalibrationStatus): HTMLElement | null {
   return h("details", { class: "why", open: true }, h("summary", {}, h("b", {}, `Warnings (${list.length})`)), h("ul", {}, ...list.map((w) => h("li", {}, inWords(w, status)))));
 }
 
+const inList = (names: readonly string[]): string => names.join(", ").replace(/, ([^,]*)$/, " or $1");
+
 export function calibratePanel(twin: Twin): HTMLElement {
-  const choices = twin.scene.parameters.map((p) => rangeRow(p, twin.now.setup.value?.parameters[p.key] ?? null, freeAtFirst.includes(p.key)));
+  const choices = twin.scene.parameters.map((p) => rangeRow(p, twin.now.setup.value?.parameters[p.key] ?? null, startsFree(p, false)));
   const first = choices.filter((c) => c.free.checked);
   const others = choices.filter((c) => !c.free.checked);
   const runs = h("input", { type: "number", min: 8, max: 2000, step: 1, value: usualRuns, "aria-label": "Runs at most" });
   const two = h("input", { type: "checkbox", "aria-describedby": "two-models-help" });
-  const setRuns = (): void => {
-    runs.value = String(two.checked ? runsBesideFast : usualRuns);
+  let runsTyped = false;
+  runs.addEventListener("input", () => (runsTyped = true));
+  /** Those of no use to the fast model, with whether they are free without it. */
+  const unused = choices.filter((c) => !c.parameter.used_by_depth_averaged).map((choice) => ({ choice, free: choice.free.checked }));
+  const unusedNote = h("p", { class: "hint", hidden: true }, `The depth-averaged model does not use ${inList(unused.map(({ choice }) => choice.parameter.label))}.`);
+  two.addEventListener("change", () => {
+    runs.value = String(runsAfterChoice(runsTyped, runs.valueAsNumber, two.checked ? runsBesideFast : usualRuns));
     runs.min = two.checked ? "3" : "8";
-  };
-  two.addEventListener("change", setRuns);
+    for (const one of unused) {
+      if (two.checked) one.free = one.choice.free.checked;
+      one.choice.free.checked = !two.checked && one.free;
+    }
+    unusedNote.hidden = !two.checked || unused.length === 0;
+    show();
+  });
   const problem = h("p", { class: "field-note", role: "alert" });
   let successor: HTMLButtonElement | null = null;  // of a pressed button that disappears: it gets the keyboard focus
   const start = button("Start", { class: "primary", onclick: () => void begin() });
@@ -71,7 +83,7 @@ export function calibratePanel(twin: Twin): HTMLElement {
   const form = h("div", { class: "calibrate-form" }, heading, ...first.map((c) => c.element),
     others.length === 0 ? null : h("details", {}, h("summary", {}, "More parameters"), ...others.map((c) => c.element)),
     h("label", { class: "two-models" }, two, "Search with the depth-averaged model"),
-    h("p", { class: "hint", id: "two-models-help" }, "It takes seconds per run: up to 100 of its runs search, and particles run only where they are needed to confirm."),
+    h("p", { class: "hint", id: "two-models-help" }, "It takes seconds per run: up to 100 of its runs search, and particles run only where they are needed to confirm."), unusedNote,
     h("div", { class: "row" }, h("label", { class: "row runs", title: "Two parameters need some 30 to 60" }, "Runs at most", runs), h("span", { class: "spring" }), start), problem);
 
   const map = new MisfitMap();
@@ -99,7 +111,8 @@ export function calibratePanel(twin: Twin): HTMLElement {
   const fillRuns = (status: CalibrationStatus): void => {
     const head = h("tr", {}, h("th", { scope: "col" }, "Run"), ...status.parameters.map((p) => h("td", {}, capital(p.label))), h("td", {}, "Misfit"));
     table.replaceChildren(h("summary", {}, "All runs"), h("table", { class: "plain" }, h("thead", {}, head), h("tbody", {},
-      ...status.runs.map((r, k) => h("tr", {}, h("th", { scope: "row" }, `${k + 1}, ${r.phase}`), ...r.values.map((v) => h("td", {}, number(v))), h("td", {}, r.misfit === null ? "failed" : number(r.misfit)))))));
+      ...[...status.runs.map((r, k) => ({ r, name: `${k + 1}, ${r.phase}` })), ...status.fast_runs.map((r, k) => ({ r, name: `${k + 1}, depth-averaged, ${r.phase}` }))]
+        .map(({ r, name }) => h("tr", {}, h("th", { scope: "row" }, name), ...r.values.map((v) => h("td", {}, number(v))), h("td", {}, r.misfit === null ? "failed" : number(r.misfit)))))));
   };
   let told: CalibrationStatus | null = null;
   const show = (): void => {
@@ -108,20 +121,20 @@ export function calibratePanel(twin: Twin): HTMLElement {
     why.hidden = possible;
     why.textContent = status?.why_not ?? "";
     about.hidden = !possible || status.state !== "idle";
-    heading.textContent = status === null || status.state === "idle" ? "Free parameters and their ranges" : "Once more";
+    heading.textContent = status === null || status.state === "idle" ? "Free parameters and their ranges" : "Run again";
     for (const part of [observed, form]) part.hidden = !possible;
     const ran = possible && status.state !== "idle";
     const runningNow = ran && (status.state === "running" || status.state === "cancelling");
     for (const part of [going, map.element]) part.hidden = !ran;
     found.hidden = !ran || runningNow || status.best === null;
-    table.hidden = !ran || status.runs.length === 0;
+    table.hidden = !ran || status.runs.length + status.fast_runs.length === 0;
     form.hidden = !possible || runningNow;
     if (!possible) return;
     const hindrance = twin.hindrance;
     start.disabled = use.disabled = hindrance !== null;
     start.title = hindrance ?? "Runs beside the live run, at lower priority";
-    for (const { free, ends } of choices) {
-      free.disabled = hindrance !== null;
+    for (const { parameter, free, ends } of choices) {
+      free.disabled = hindrance !== null || (two.checked && !parameter.used_by_depth_averaged);
       for (const end of ends) end.disabled = hindrance !== null || !free.checked;
     }
     runs.disabled = two.disabled = hindrance !== null;
@@ -133,8 +146,8 @@ export function calibratePanel(twin: Twin): HTMLElement {
     }
     observed.replaceChildren(observationTable(status));
     if (!ran) return;
-    bar.max = Math.max(1, status.runs_at_most);
-    bar.value = status.runs.length;
+    bar.max = Math.max(1, status.runs_at_most + status.fast_runs_at_most);
+    bar.value = status.runs.length + status.fast_runs.length;
     const sentence = progressText(status) + (status.state === "running" && status.by ? ` · started by ${status.by}` : "");
     if (progress.textContent !== sentence) progress.textContent = sentence;
     progress.classList.toggle("bad", status.state === "failed");

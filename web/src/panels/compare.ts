@@ -83,11 +83,11 @@ export class ComparePanel {
     const [left, right] = [this.side(a), this.side(b)];
     this.rows = comparisonRows(left, right, twin.scene.parameters);
     const count = untouched(left, right);
-    this.rest.textContent = count > 0 ? `${count} ${count === 1 ? "house" : "houses"} hit in neither.` : "";
+    this.rest.textContent = count > 0 ? `${count} ${count === 1 ? "house" : "houses"} not hit in either run` : "";
     const [then, now] = [a, b].map((name) => twin.cells[name].state.value?.time_s ?? 0);
     const over = [a, b].every((name) => ["ended", "at_rest"].includes(twin.cells[name].state.value?.status ?? ""));
     this.notEqual.hidden = over;
-    this.notEqual.textContent = over ? "" : `Not both runs are over: ${a} is at ${fixed(then, 1)} s, ${b} at ${fixed(now, 1)} s.`;
+    this.notEqual.textContent = over ? "" : `These runs are still in progress: ${a} is at ${fixed(then, 1)} s, ${b} at ${fixed(now, 1)} s.`;
     this.head.replaceChildren(h("tr", {}, h("th", {}), ...[a, b].map((name) => h("th", { scope: "col", title: `${paneText(twin, name)}: ${standing(twin, name)}` }, name)),
       h("th", { scope: "col" }, `${b} − ${a}`)));
     const lines: HTMLElement[] = [];

@@ -109,5 +109,5 @@ export function draftBox(twin: Twin, drawing: Drawing, shape: Shape): HTMLElemen
   twin.inflowByLine.watch(show);
   return h("div", { class: "draft" }, how, ...fields, measure, lie, profile?.element,
     h("details", {}, h("summary", {}, "By coordinates"), h("div", { class: "row coordinates" }, east, north, add)),
-    h("div", { class: "row" }, done, across, button("Cancel", { class: "small", onclick: () => drawing.cancel() })));
+    h("div", { class: "row buttons" }, done, across, button("Cancel", { class: "small", onclick: () => drawing.cancel() })));
 }

@@ -29,7 +29,7 @@ export function exportButtons(twin: Twin, stage: Stage, picture: Picture): HTMLE
 interface Offer { name: string; what: string; bytes: number | null; get: () => Promise<Blob> }
 
 /** What is usually wanted of a run. */
-const usual = new Set(["report.html", "front.csv", "run_out.csv", "buildings.csv", "timeseries.csv", "results.gpkg", "manifest.json", "journal.json"]);
+const usual = new Set(["report.html", "front.csv", "run_out.csv", "buildings.csv", "timeseries.csv", "gauges.csv", "results.gpkg", "manifest.json", "journal.json"]);
 
 async function open(twin: Twin, picture: Picture): Promise<void> {
   const scenario = twin.edited.value;

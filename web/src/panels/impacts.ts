@@ -25,8 +25,8 @@ const barrierColumns: Column<BarrierImpact>[] = [
   { key: "name", title: "Barrier", unit: "", value: (r) => r.name },
   { key: "force", title: "Force", unit: "kN", value: (r) => r.peak_force_kN, digits: 0 },
   { key: "retained", title: "Retained", unit: "m3", value: (r) => r.retained_m3, digits: 0 },
-  { key: "over", title: "Over", unit: "m3", value: (r) => r.overtopped_m3, digits: 1 },
-  { key: "through", title: "Through", unit: "m3", value: (r) => r.passed_m3, digits: 1 },
+  { key: "over", title: "Overtopped", unit: "m3", value: (r) => r.overtopped_m3, digits: 1 },
+  { key: "through", title: "Passed through", unit: "m3", value: (r) => r.passed_m3, digits: 1 },
   { key: "failed", title: "Failed", unit: "s", value: (r) => r.failed_s, digits: 1 },
 ];
 
@@ -50,9 +50,9 @@ class SortedTable<Row extends Impact> {
   private rows: Row[] = [];
 
   constructor(private readonly columns: Column<Row>[], private readonly go: (row: Row) => void, private readonly mark: (row: Row) => string | null,
-    private readonly selected: () => string | null) {
+    private readonly selected: () => string | null, kind = "") {
     this.sortKey = columns[1]?.key ?? "name";
-    this.element = h("table", { class: "impacts" }, h("thead", {}, h("tr", {}, ...columns.map((c) => this.head(c)))), this.body);
+    this.element = h("table", { class: `impacts ${kind}`.trim() }, h("thead", {}, h("tr", {}, ...columns.map((c) => this.head(c)))), this.body);
   }
   show(rows: readonly Row[]): void {
     this.rows = [...rows];
@@ -139,7 +139,7 @@ export function impactsPanel(twin: Twin, stage: Stage): HTMLElement {
   const selected = (): string | null => twin.selection.value?.id ?? null;
   const houses = new SortedTable(houseColumns, go("building"),
     (row) => impactColour(row, twin.houseColour.value, twin.scene, largestPressure(twin.now.impacts.value)), selected);
-  const barriers = new SortedTable(barrierColumns, go("barrier"), () => null, selected);
+  const barriers = new SortedTable(barrierColumns, go("barrier"), () => null, selected, "of-barriers");
   const colouring = h("select", { "aria-label": "Colour of houses", onchange: () => (twin.houseColour.value = colouring.value as HouseColour) },
     h("option", { value: "intensity" }, "by intensity class"), h("option", { value: "pressure" }, "by impact pressure"));
   const { intensity } = twin.scene;
@@ -161,7 +161,7 @@ export function impactsPanel(twin: Twin, stage: Stage): HTMLElement {
     const removed = impacts?.removed ?? [];
     gone.replaceChildren(...removed.map((r) => h("li", {}, h("b", {}, r.name), ` until ${fixed(r.removed_s, 1)} s: `,
       r.hit ? `${quantity(r.peak_impact_pressure_kPa, "kPa")}, ${quantity(r.peak_force_kN, "kN")}` : "not hit",
-      r.overtopped_m3 === undefined ? "" : `, ${quantity(r.overtopped_m3, "m3")} went over it, ${quantity(r.retained_m3, "m3")} retained`)));
+      r.overtopped_m3 === undefined ? "" : `, ${quantity(r.overtopped_m3, "m3")} overtopped it, ${quantity(r.retained_m3, "m3")} retained`)));
     goneTitle.hidden = gone.hidden = removed.length === 0;
     then.hidden = twin.replay_s.value === null;
     then.textContent = `As of ${fixed(twin.replay_s.value, 1)} s.`;

@@ -21,7 +21,7 @@ const shortcuts: [string, [string, string][]][] = [
 
 export function help(): void {
   openDialog(dialog("Help", h("p", { class: "hint" },
-    "Run the simulation below. Controls on the left take effect in the next step, also while debris moves: draw a barrier across the path, raise the friction, trigger a release. Changes to beds and inflows take effect at the next restart. Readings are on the right. The bar at the bottom scrubs through the recording."),
+    "Run the simulation below. Controls on the left change it: draw a barrier across the path, raise the friction, trigger a release. A change to a run that has begun starts a new scenario from time 0, beside the first, or takes effect from the next step: the page asks the first time, and “Edits” below the list of scenarios holds the choice. Changes to beds and inflows take effect at the next restart. Readings are on the right. The bar at the bottom scrubs through the recording."),
   ...shortcuts.map(([title, keys]) => h("section", { class: "shortcuts" }, h("h3", {}, title),
     h("dl", {}, ...keys.flatMap(([key, what]) => [h("dt", {}, key), h("dd", {}, what)]))))));
 }
@@ -64,6 +64,14 @@ export function keys(twin: Twin, stage: Stage, drawing: Drawing, bar: ViewBar, t
       case "f": stage.rig.fit(); break;
       case "n": twin.setLook(twin.natural ? "scientific" : "natural"); break;
       case "x": drawing.snap(); break;
+      case "Enter":
+        if (drawing.shape === null) return;
+        drawing.finish();
+        break;
+      case "Backspace":
+        if (drawing.shape === null) return;
+        drawing.removeLast();
+        break;
       case "?": help(); break;
       case "Delete": {
         const item = itemOf(twin.now.setup.value, twin.selection.value);

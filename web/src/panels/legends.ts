@@ -122,6 +122,11 @@ export function scaleAndCompass(twin: Twin, stage: Stage, readOut: HTMLElement):
     bar.style.width = `${Math.round(length / perPixel)}px`;
     text.textContent = length >= 1000 ? `${tick(length / 1000)}\u202fkm` : `${tick(length)}\u202fm`;
   });
-  return h("div", { class: "map-marks" }, compass, scale, readOut,
-    h("div", { class: "map-note" }, `Contours every ${tick(contourInterval(stage.relief))}\u202fm · ${twin.scene.crs}`));
+  const note = h("div", { class: "map-note" });
+  watchAll([twin.contours, twin.look, twin.layer, twin.surface], () => {
+    // The natural look draws none.
+    const drawn = twin.contours.value && !twin.natural;
+    note.textContent = `${drawn ? `Contours every ${tick(contourInterval(stage.relief))}\u202fm · ` : ""}${twin.scene.crs}`;
+  });
+  return h("div", { class: "map-marks" }, compass, scale, readOut, note);
 }

@@ -1,5 +1,5 @@
 // The misfit over the first two parameters of a calibration: a dot per run, the emulators' field behind them.
-import type { CalibrationStatus } from "../protocol/messages";
+import type { CalibrationRun, CalibrationStatus } from "../protocol/messages";
 import { css, rampAt, ramps, roundStep } from "../scene/colour";
 import { quantity, number, tick, unitText } from "../state/format";
 import { MisfitScale } from "../state/misfit";
@@ -29,6 +29,7 @@ export class MisfitMap {
   private readonly drawing: SVGSVGElement;
   private readonly bar = h("div", { class: "legend-bar" });
   private readonly ends = h("div", { class: "misfit-ends" });
+  private readonly fastHint = h("span", { hidden: true }, " Small dots: runs of the depth-averaged model.");
 
   constructor() {
     const { left, top, width, height, right, bottom } = plot;
@@ -42,7 +43,7 @@ export class MisfitMap {
     this.bar.style.background = `linear-gradient(to right, ${Array.from({ length: 17 }, (_, i) => css(rampAt(ramps.misfit, i / 16))).join(", ")})`;
     this.element = h("figure", { class: "misfit-map" }, holder,
       h("div", { class: "misfit-key" }, h("b", {}, "Misfit"), h("div", {}, this.bar, this.ends)),
-      h("p", { class: "hint" }, "A dot is a run. Misfit: sum of squared deviations from the observations, in standard deviations; dark fits best. Ring: best run. Cross: the present values."));
+      h("p", { class: "hint" }, "A dot is a run. Misfit: sum of squared deviations from the observations, in standard deviations; dark fits best. Ring: best run. Cross: the present values.", this.fastHint));
   }
 
   /** present: the live scenario's current values of the parameters. */
@@ -68,18 +69,22 @@ export class MisfitMap {
       const [u, v] = [values[0], second ? values[1] : misfit === null ? 0 : scale.share(misfit)];
       return inside(u, x) && inside(v, y) ? [px(u), py(v)] : null;
     };
-    status.runs.forEach((run, k) => {
+    const dot = (run: CalibrationRun, k: number, fast: boolean): void => {
       const at = place(run.values, run.misfit);
       if (!at) return;
       const words = status.parameters.map((p, i) => `${p.label} ${quantity(run.values[i], p.unit, 3)}`).join(", ");
-      const title = svg("title", {}, `Run ${k + 1}, ${run.phase}: ${words}; ${run.misfit === null ? "failed" : `misfit ${number(run.misfit, 3)}`}`);
+      const title = svg("title", {}, `Run ${k + 1}${fast ? " of the depth-averaged model" : ""}, ${run.phase}: ${words}; ${run.misfit === null ? "failed" : `misfit ${number(run.misfit, 3)}`}`);
       if (run.misfit === null) {
         marks.push(svg("path", { class: "failed", d: `M${at[0] - 4} ${at[1] - 4}l8 8m0 -8l-8 8` }, title));
         return;
       }
-      marks.push(svg("circle", { class: "halo", cx: at[0].toFixed(1), cy: at[1].toFixed(1), r: 5.6 }),
-        svg("circle", { class: "run", cx: at[0].toFixed(1), cy: at[1].toFixed(1), r: 4.4, fill: css(rampAt(ramps.misfit, scale.share(run.misfit))) }, title));
-    });
+      marks.push(svg("circle", { class: "halo", cx: at[0].toFixed(1), cy: at[1].toFixed(1), r: fast ? 3.8 : 5.6 }),
+        svg("circle", { class: fast ? "run fast" : "run", cx: at[0].toFixed(1), cy: at[1].toFixed(1), r: fast ? 2.8 : 4.4, fill: css(rampAt(ramps.misfit, scale.share(run.misfit))) }, title));
+    };
+    // Particles lie above: they decide.
+    status.fast_runs.forEach((run, k) => dot(run, k, true));
+    status.runs.forEach((run, k) => dot(run, k, false));
+    this.fastHint.hidden = status.fast_runs_at_most === 0;
     const best = status.best && place(status.best.values, status.best.misfit);
     if (best) marks.push(svg("circle", { class: "best", cx: best[0].toFixed(1), cy: best[1].toFixed(1), r: 9 }));
     if (second && inside(present[0], x) && inside(present[1], y)) {
@@ -87,7 +92,7 @@ export class MisfitMap {
       for (const kind of ["now-edge", "now"]) marks.push(svg("path", { class: kind, d: `M${u - 6} ${v}h12M${u} ${v - 6}v12` }));
     }
     this.drawing.replaceChildren(...this.axes(x, y, px, py, second !== undefined), ...marks);
-    this.drawing.setAttribute("aria-label", `Misfit over ${first.label}${second ? ` and ${second.label}` : ""}: ${status.runs.length} runs` +
+    this.drawing.setAttribute("aria-label", `Misfit over ${first.label}${second ? ` and ${second.label}` : ""}: ${status.runs.length} runs${status.fast_runs.length > 0 ? `, ${status.fast_runs.length} of the depth-averaged model` : ""}` +
       (status.best ? `; best: ${status.parameters.map((p, i) => `${p.label} ${quantity(status.best?.values[i], p.unit, 3)}`).join(", ")}, misfit ${number(status.best.misfit, 3)}` : ""));
   }
 

@@ -61,8 +61,9 @@ export function parameterFields(twin: Twin): HTMLElement {
 
 function rangeText({ range, unit }: Parameter): string {
   const u = unitText(unit);
-  if (range.low !== null && range.high !== null) return `${range.low} to ${range.high} ${u}`.trim();
-  if (range.low !== null) return `${range.low_included ? "at least" : "above"} ${range.low} ${u}`.trim();
+  if (range.low !== null && range.high !== null && !range.low_included) return `greater than ${range.low} and ${range.high_included ? "at most" : "below"} ${range.high} ${u}`.trim();
+  if (range.low !== null && range.high !== null) return `${range.low} to ${range.high_included ? "" : "below "}${range.high} ${u}`.trim();
+  if (range.low !== null) return `${range.low_included ? "at least" : "greater than"} ${range.low} ${u}`.trim();
   if (range.high !== null) return `${range.high_included ? "at most" : "below"} ${range.high} ${u}`.trim();
   return "any number";
 }

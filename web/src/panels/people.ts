@@ -1,6 +1,7 @@
 // People in the session, control, links to share.
 import type { Person } from "../protocol/messages";
 import { linkWith } from "../protocol/token";
+import { inkOn } from "../scene/colour";
 import { watchAll } from "../state/cell";
 import type { Twin } from "../state/twin";
 import { dialog, openDialog } from "../ui/dialog";
@@ -14,6 +15,7 @@ function chip(person: Person, twin: Twin): HTMLElement {
   const self = twin.you.value?.id === person.id;
   const element = h("span", { class: `person${holds ? " holds" : ""}`, title: `${person.name}${self ? " (you)" : ""}: ${holds ? "has control" : person.role === "viewer" ? "viewer" : "can ask for control"}` }, initials(person.name));
   element.style.background = person.colour;
+  element.style.color = inkOn(person.colour);
   return element;
 }
 
@@ -56,7 +58,7 @@ export function people(twin: Twin): HTMLElement {
     request.hidden = !asked;
   });
   return h("div", { class: "people" }, connection, request, control, chips,
-    button("Share", { icon: "share", onclick: () => share(twin) }));
+    button("Share", { icon: "share", "aria-label": "Share", title: "Share this session", onclick: () => share(twin) }));
 }
 
 function share(twin: Twin): void {

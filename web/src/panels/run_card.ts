@@ -1,6 +1,7 @@
 // The numbers of the run that are always visible, and the mass balance.
 import { watchAll } from "../state/cell";
 import { bytes, count, fixed, quantity } from "../state/format";
+import { endText } from "../state/time_left";
 import type { Twin } from "../state/twin";
 import { h } from "../ui/dom";
 
@@ -36,7 +37,7 @@ export function runCard(twin: Twin): HTMLElement {
     steps.value.textContent = s && live ? `${fixed(s.steps_per_second, 0)} /s` : "–";
     real.value.textContent = s && live ? `${fixed(s.real_time_factor, 2)} ×` : "–";
     // Of the run's end, not of the time that is looked back at.
-    const said = live ? (s?.message ?? "") : "";
+    const said = live && s ? endText(s) : "";
     message.hidden = said === "";
     if (message.textContent !== said) message.textContent = said;
     message.classList.toggle("bad", s?.status === "fault");

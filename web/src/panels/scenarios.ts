@@ -43,7 +43,7 @@ export function scenarioList(twin: Twin): HTMLElement {
     habit.disabled = hindrance !== null;
   });
   return h("div", { class: "which", role: "group", "aria-label": "Scenarios" },
-    h("div", { class: "group-head" }, h("h2", {}, "Scenarios"), h("span", { class: "grow" }), fresh, compare), list, habitRow);
+    h("div", { class: "group-head" }, h("h2", {}, "Scenarios"), fresh, compare), list, habitRow);
 }
 
 function scenarioRow(twin: Twin, name: ScenarioName): HTMLElement {
@@ -83,7 +83,7 @@ function scenarioRow(twin: Twin, name: ScenarioName): HTMLElement {
     const said = first && setup.value ? differences(first, setup.value, twin.scene.parameters) : [];
     const changes = changesText(setup.value) && `Changed on the way: ${changesText(setup.value)}`;
     title.textContent = setup.value?.name || `Scenario ${name}`;
-    apart.textContent = name === "A" || said.length > 0 ? said.join(", ") : "as A";
+    apart.textContent = name === "A" || said.length > 0 ? said.join(", ") : "Same as A";
     apart.hidden = apart.textContent === "";
     choose.title = [apart.textContent, changes].filter(Boolean).join("\n");
     // No further line: what is below must not move while it is clicked.

@@ -65,7 +65,7 @@ export function transport(twin: Twin, playback: Playback): HTMLElement {
       if (![...speed.options].some((o) => o.value === value)) speed.prepend(h("option", { value }, `${value} ×`));
       speed.value = value;
     }
-    status.textContent = state ? (twin.replay_s.value === null ? statusWords[state.status] : "Recording") : "";
+    status.textContent = state ? (twin.replay_s.value === null ? statusWords[state.status] : "Playback") : "";
     status.dataset["status"] = twin.replay_s.value === null ? (state?.status ?? "") : "replay";
     status.title = twin.replay_s.value === null ? (state?.message ?? "") : "";
     live.classList.toggle("on", twin.replay_s.value === null);

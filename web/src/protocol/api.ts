@@ -13,6 +13,17 @@ export class Refused extends Error {
 
 const at = (time_s: number | null): string => (time_s === null ? "" : `?time_s=${time_s.toFixed(4)}`);
 
+/** What the server says against a request, or its status. */
+function refusal(status: number, path: string, text: string): Refused {
+  try {
+    const told = JSON.parse(text) as { error?: unknown };
+    if (typeof told.error === "string") return new Refused(status, told.error);
+  } catch {
+    // The answer was not JSON: use the status.
+  }
+  return new Refused(status, `The server answered ${status} to ${path}.`);
+}
+
 export class Api {
   /** Of this page's person, once the WebSocket has said hello. */
   secret: string | null = null;
@@ -23,26 +34,30 @@ export class Api {
 
   private async ask(method: string, path: string, body?: object): Promise<Response> {
     const headers: Record<string, string> = { Authorization: `Bearer ${this.token}` };
-    const file = body instanceof Blob;
-    if (body !== undefined) headers["Content-Type"] = file ? "application/octet-stream" : "application/json";
+    if (body !== undefined) headers["Content-Type"] = "application/json";
     if (method !== "GET" && this.secret !== null) headers["Talus-Person"] = this.secret;
     let response: Response;
     try {
-      response = await fetch(`api/${path}`, { method, headers, ...(body === undefined ? {} : { body: file ? body : JSON.stringify(body) }) });
+      response = await fetch(`api/${path}`, { method, headers, ...(body === undefined ? {} : { body: JSON.stringify(body) }) });
     } catch {
       throw new Refused(0, "The server does not answer.");
     }
-    if (!response.ok) {
-      let sentence = `The server answered ${response.status} to ${path}.`;
-      try {
-        const told = (await response.json()) as { error?: unknown };
-        if (typeof told.error === "string") sentence = told.error;
-      } catch {
-        // The answer was not JSON: use the status.
-      }
-      throw new Refused(response.status, sentence);
-    }
+    if (!response.ok) throw refusal(response.status, path, await response.text().catch(() => ""));
     return response;
+  }
+  /** Sends a file; `onshare` is told which share of it has been sent. */
+  private upload<T>(path: string, file: File, onshare: (share: number) => void): Promise<T> {
+    return new Promise((resolve, reject) => {
+      const request = new XMLHttpRequest();
+      request.open("PUT", `api/${path}`);
+      request.setRequestHeader("Authorization", `Bearer ${this.token}`);
+      request.setRequestHeader("Content-Type", "application/octet-stream");
+      if (this.secret !== null) request.setRequestHeader("Talus-Person", this.secret);
+      request.upload.addEventListener("progress", (event) => onshare(event.loaded / Math.max(1, file.size)));
+      request.addEventListener("error", () => reject(new Refused(0, "The server does not answer.")));
+      request.addEventListener("load", () => (request.status >= 200 && request.status < 300 ? resolve(JSON.parse(request.responseText) as T) : reject(refusal(request.status, path, request.responseText))));
+      request.send(file);
+    });
   }
   private async get<T>(path: string, read: (response: Response) => Promise<T>): Promise<T> {
     ++this.reads.begun;
@@ -101,8 +116,8 @@ export class Api {
   saveSession = async (name: string, file?: unknown): Promise<void> => void (await this.ask("POST", "sessions", { name, ...(file === undefined ? {} : { file }) }));
   removeSession = async (id: string): Promise<void> => void (await this.ask("DELETE", `sessions/${id}`));
   beginDraft = async (): Promise<string> => ((await (await this.ask("POST", "draft", {})).json()) as { created: string }).created;
-  uploadToDraft = async (id: string, role: DraftRole, file: File): Promise<Draft> =>
-    (await (await this.ask("PUT", `draft/${id}/files/${role}?name=${encodeURIComponent(file.name)}`, file)).json()) as Draft;
+  uploadToDraft = (id: string, role: DraftRole, file: File, onshare: (share: number) => void): Promise<Draft> =>
+    this.upload(`draft/${id}/files/${role}?name=${encodeURIComponent(file.name)}`, file, onshare);
   removeFromDraft = async (id: string, role: DraftRole): Promise<Draft> => (await (await this.ask("DELETE", `draft/${id}/files/${role}`)).json()) as Draft;
   mendDraft = async (id: string, mending: MendingOfTerrain): Promise<Draft> => (await (await this.ask("POST", `draft/${id}/mend`, mending)).json()) as Draft;
   reliefOfDraft = async (id: string): Promise<Grid> => decodeGrid(await this.binary(`draft/${id}/relief`));

@@ -31,6 +31,7 @@ export interface Parameter {
   value: number | null;
   range: { low: number | null; high: number | null; low_included: boolean; high_included: boolean };
   help: string;
+  used_by_depth_averaged: boolean;
 }
 export interface Observation { name: string; chainage_m: number; quantity: "front_velocity" | "debris_speed"; observed_mps: number; source: string }
 /** chainage_m: null: given as a place. */
@@ -99,6 +100,8 @@ export interface State {
   front_chainage_m: number | null;
   front_velocity_mps: number | null;
   largest_speed_mps: number;
+  /** The largest so far; null: not known. */
+  peak_speed_mps: number | null;
   mean_compression: number;
   max_compression: number;
   squeezed_share: number;
@@ -248,8 +251,8 @@ export interface CalibrationStatus {
   phase: CalibrationRun["phase"] | null;
   runs_at_most: number;
   runs_failed: number;
-  /** Of the depth-averaged model, which searches; 0: it does not. */
-  fast_runs: number;
+  /** Of the depth-averaged model, which searches; at most 0: it does not. */
+  fast_runs: CalibrationRun[];
   fast_runs_at_most: number;
   wall_remaining_s: number | null;
   runs: CalibrationRun[];

@@ -245,16 +245,16 @@ export interface Tie {
 export const ties: Record<string, Record<string, Tie>> = {
   barrier: {
     thickness_m: {
-      spacings: 0.5, why: "debris on both sides would feel each other through it",
+      spacings: 0.5, why: "thinner walls let debris interact across them",
     },
     clearance_m: {
-      spacings: 1, why: "nothing would get through a lower gap; smaller particles allow less",
+      spacings: 1, why: "nothing passes through lower gaps; smaller particles allow less",
       below: "height_m",
     },
   },
   barrier_opening: {
     width_m: {
-      spacings: 2, why: "nothing would get through a narrower one; smaller particles allow less",
+      spacings: 2, why: "nothing passes through narrower ones; smaller particles allow less",
     },
   },
   material: {

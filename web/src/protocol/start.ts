@@ -24,8 +24,11 @@ export interface Draft {
     crs: string;
     metric_crs: string;
     value_unit: string;
+    /** Metres per unit of the heights, as far as the file says. */
+    height_unit_m: number;
     cell_m?: number;
     nodata_share?: number;
+    elevation_m?: [number, number] | null;
     mending: MendingOfTerrain;
   } | null;
   bytes_left: number;

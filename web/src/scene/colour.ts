@@ -105,3 +105,20 @@ export function roundStep(value: number): number {
   for (const m of [1, 2, 2.5, 5]) if (value <= m * power * (1 + 1e-9)) return m * power;
   return 10 * power;
 }
+
+const leastSpeedScale_mps = 10;
+/** Upper end of the colours of speed: the same for everybody who looks at these runs, whenever they came, from what the server says of the whole run. */
+export const speedScale_mps = (states: readonly ({ peak_speed_mps: number | null } | null)[]): number =>
+  Math.max(leastSpeedScale_mps, ...states.map((state) => (state?.peak_speed_mps ? roundStep(state.peak_speed_mps) : 0)));
+
+/** Luminance of a colour of the page, #rrggbb, as WCAG 2.2 defines it. */
+function luminance(hex: string): number {
+  const [r, g, b] = [1, 3, 5].map((at) => Number.parseInt(hex.slice(at, at + 2), 16) / 255).map((v) => (v <= 0.04045 ? v / 12.92 : ((v + 0.055) / 1.055) ** 2.4));
+  return 0.2126 * r + 0.7152 * g + 0.0722 * b;
+}
+export function contrast(a: string, b: string): number {
+  const [low, high] = [luminance(a), luminance(b)].sort((u, v) => u - v);
+  return (high + 0.05) / (low + 0.05);
+}
+/** Black or white, whichever can be read better on a colour: at least 4.5 to 1 on any. */
+export const inkOn = (hex: string): string => (contrast(hex, "#ffffff") >= contrast(hex, "#000000") ? "#ffffff" : "#000000");

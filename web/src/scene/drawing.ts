@@ -16,6 +16,11 @@ import type { Hit, Stage } from "./stage";
 
 const drawColour = "#d98a00";
 
+/** Nearer than this to the last corner, px, a click is the second of a double click. */
+const sameSpot_px = 6;
+/** And sooner than this, ms, once a shape of two points is whole. */
+const doubleClick_ms = 600;
+
 export class Drawing {
   /** Corners set so far of what is being drawn, or those of the selected shape while it is dragged. */
   readonly draft = new Cell<readonly Point[]>([]);
@@ -24,6 +29,8 @@ export class Drawing {
   private lines: Line2[] = [];
   /** The line was laid across the flow path: it is whole, another point begins a new one. */
   private snapped = false;
+  /** The last click that set a corner, in pixels of the page. */
+  private lastClick: { x: number; y: number; at_ms: number } | null = null;
   private readonly handles: Handles;
   private readonly crosshair = h("div", { class: "crosshair", hidden: true, "aria-hidden": "true" });
 
@@ -33,6 +40,7 @@ export class Drawing {
     this.listen();
     twin.tool.watch((tool) => {
       this.snapped = false;
+      if (tool.kind !== "none") this.lastClick = null;
       this.draft.value = [];
       this.pointer.value = null;
       stage.element.classList.toggle("drawing", tool.kind !== "none");
@@ -94,6 +102,7 @@ export class Drawing {
   }
   removeLast(): void {
     this.snapped = false;
+    this.lastClick = null;
     this.draft.value = this.draft.value.slice(0, -1);
     this.redraw();
   }
@@ -119,23 +128,21 @@ export class Drawing {
     });
     canvas.addEventListener("pointermove", (event) => {
       if (this.shape === null) return;
+      if (!this.atLastClick(event)) this.wakeHandles();
       const hit = this.stage.hit(event.clientX, event.clientY);
       this.pointer.value = hit ? [hit.world[0], hit.world[1]] : null;
       if (this.draft.value.length > 0) this.redraw();
     });
-    canvas.addEventListener("dblclick", () => {
-      if (this.shape === null) return;
-      // The second click of the pair has put a point on the same spot.
-      const points = this.draft.value;
-      const [a, b] = points.slice(-2);
-      if (a && b && Math.hypot(a[0] - b[0], a[1] - b[1]) < 8 * this.stage.metresPerPixel) this.draft.value = points.slice(0, -1);
-      this.finish();
+    // Also of the handles, which lie over the canvas.
+    const { element } = this.stage;
+    element.addEventListener("dblclick", () => {
+      if (this.shape !== null) this.finish();
     });
     canvas.addEventListener("focus", () => (this.crosshair.hidden = this.twin.tool.value.kind === "none" || !canvas.matches(":focus-visible")));
     canvas.addEventListener("blur", () => (this.crosshair.hidden = true));
-    canvas.addEventListener("keydown", (event) => {
+    element.addEventListener("keydown", (event) => {
       if (this.twin.tool.value.kind === "none") return;
-      if (event.key === " ") {
+      if (event.key === " " && event.target === canvas) {
         // Without a pointer, a point is placed in the middle of the view.
         const middle = this.stage.pixelOf(this.twin.edited.value, 0, 0);
         this.crosshair.hidden = false;
@@ -150,8 +157,28 @@ export class Drawing {
   }
   private click(event: PointerEvent): void {
     const hit = this.stage.hit(event.clientX, event.clientY);
-    if (this.twin.tool.value.kind === "none") this.select(event, hit);
-    else this.put(hit);
+    const again = this.atLastClick(event);
+    if (this.twin.tool.value.kind === "none") {
+      // The second click of the pair whose first one has completed a line of two points selects nothing.
+      if (!again || event.timeStamp - (this.lastClick?.at_ms ?? 0) > doubleClick_ms) this.select(event, hit);
+      return;
+    }
+    // The second click of a double click sets no corner.
+    if (again && this.shape !== null && this.draft.value.length > 0) return;
+    const click = (this.lastClick = { x: event.clientX, y: event.clientY, at_ms: event.timeStamp });
+    this.put(hit);
+    // A finger does not hover: nothing else tells that no second tap follows.
+    if (event.pointerType === "touch") setTimeout(() => this.lastClick === click && this.wakeHandles(), doubleClick_ms);
+  }
+  /** No second click of a pair comes any more: the newest corner can be dragged as well. */
+  private wakeHandles(): void {
+    if (this.lastClick === null) return;
+    this.lastClick = null;
+    if (this.shape !== null) this.dots();
+  }
+  private atLastClick(event: PointerEvent): boolean {
+    const { lastClick } = this;
+    return lastClick !== null && Math.hypot(event.clientX - lastClick.x, event.clientY - lastClick.y) < sameSpot_px;
   }
   private put(hit: Hit | null): void {
     if (!hit) return;
@@ -243,10 +270,13 @@ export class Drawing {
       move: (moved) => {
         this.draft.value = moved;
       },
-      drop: (moved) => {
+      drop: (moved, by) => {
+        // A handle that was only clicked stays: the second click of a pair, and Enter, reach it.
+        if (by === null) return;
         this.draft.value = moved;
         this.redraw();
       },
-    });
+      // The newest corner lies under the pointer: its handle would take the second click of a double click, and the focus.
+    }, this.lastClick === null ? null : this.draft.value.length - 1);
   }
 }

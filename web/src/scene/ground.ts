@@ -129,7 +129,8 @@ export class Ground {
     uSurface: IUniform<number>; uFlowTime: IUniform<number>; uContour: IUniform<number>; uLayerOpacity: IUniform<number>;
   };
 
-  constructor(geometry: BufferGeometry, private readonly relief: Relief, further: Record<string, IUniform>) {
+  /** onEarth: heights are those of a place on Earth, so that level ground at 0 m is the sea, and not the floor of a laboratory. */
+  constructor(geometry: BufferGeometry, private readonly relief: Relief, further: Record<string, IUniform>, onEarth: boolean) {
     const low = relief.lowest - relief.origin[2];
     this.uniforms = {
       ...further,
@@ -163,6 +164,7 @@ export class Ground {
       uShadePlacing: { value: new Vector4() },
       uFlowTime: { value: 0 },
       uPhotoGain: { value: 1 },
+      uSea: { value: onEarth ? 1 : 0 },
     };
     const material = new MeshLambertMaterial();
     material.onBeforeCompile = (shader) => {

@@ -29,8 +29,8 @@ export class Handles {
     return this.before !== null;
   }
 
-  /** Shows corners, one handle in the middle that moves the whole, or both. */
-  show(name: string, points: readonly Point[], scenario: ScenarioName, grips: "corners" | "whole" | "all", events: HandleEvents): void {
+  /** Shows corners, one handle in the middle that moves the whole, or both. Clicks pass through the handle of `passive`, a corner. */
+  show(name: string, points: readonly Point[], scenario: ScenarioName, grips: "corners" | "whole" | "all", events: HandleEvents, passive: number | null = null): void {
     if (this.busy) return;
     const focused = this.buttons.indexOf(document.activeElement as HTMLButtonElement);
     this.clear();
@@ -41,7 +41,7 @@ export class Handles {
     const end = points.length + (grips === "corners" ? 0 : 1);
     for (let k = this.first; k < end; ++k) {
       const isWhole = k === points.length;
-      const button = h("button", { type: "button", class: isWhole ? "handle whole" : "handle",
+      const button = h("button", { type: "button", class: isWhole ? "handle whole" : k === passive ? "handle passive" : "handle",
         "aria-label": `${isWhole ? "Whole of" : `Corner ${k + 1} of`} ${name}; arrow keys move it by ${nudge_m} m`,
         title: isWhole ? "Drag to move the whole shape" : "Drag to move this corner" });
       button.addEventListener("pointerdown", (event) => this.drag(event, button, k, events));

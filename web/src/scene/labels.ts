@@ -2,6 +2,7 @@
 import { Vector3 } from "three";
 import { h } from "../ui/dom";
 import type { Place } from "../protocol/messages";
+import { inkOn } from "./colour";
 import type { Relief } from "./relief";
 import type { Rig } from "./rig";
 
@@ -36,7 +37,10 @@ export class Labels {
     this.layer.replaceChildren();
     this.shown = [...labels].sort((a, b) => b.priority - a.priority).map((label) => {
       const element = h("div", { class: `label ${label.kind}` }, h("span", {}, label.text));
-      if (label.colour) element.style.setProperty("--mark", label.colour);
+      if (label.colour) {
+        element.style.setProperty("--mark", label.colour);
+        element.style.setProperty("--mark-ink", inkOn(label.colour));
+      }
       this.layer.append(element);
       return { ...label, element, width: 0, height: 0 };
     });

@@ -6,6 +6,7 @@ import { watchAll } from "../state/cell";
 import { fixed, quantity } from "../state/format";
 import type { Twin } from "../state/twin";
 import { h } from "../ui/dom";
+import { inkOn } from "./colour";
 import { infoOf } from "./layers";
 import { disposeLine, pixelLine } from "./lines";
 import type { ShownLayers } from "./shown_layers";
@@ -49,6 +50,7 @@ export function marks(twin: Twin, stage: Stage, layers: ShownLayers): HTMLElemen
         stage.element.append(element);
       }
       element.style.setProperty("--mark", person.colour);
+      element.style.setProperty("--mark-ink", inkOn(person.colour));
       element.lastElementChild?.replaceChildren(person.name);
     }
     place();

@@ -70,7 +70,7 @@ export class ScenarioView {
     this.relief = relief;
     this.sky = new Sky(this.three, shared.daylight);
     this.depths = new DepthField(scene);
-    this.ground = new Ground(shared.geometry, relief, { ...this.depths.uniforms, ...shared.daylight.uniforms });
+    this.ground = new Ground(shared.geometry, relief, { ...this.depths.uniforms, ...shared.daylight.uniforms }, shared.scene.latitude_deg !== null);
     this.trail = new Trail(scene.map, scene.origin);
     this.ground.layTrail(this.trail);
     this.houses = new Houses(shared.daylight.uniforms);

@@ -1,12 +1,12 @@
 // The canvas: one renderer, a view per scenario side by side, one camera for all, pictures only when something changed.
 import { Vector3, WebGLRenderer, type BufferGeometry } from "three";
-import { lastDecode, scenarioNames, type Frame, type ScenarioName } from "../protocol/frame";
+import { lastDecode, type Frame, type ScenarioName } from "../protocol/frame";
 import type { Grid } from "../protocol/grid";
 import type { Place, SceneInfo } from "../protocol/messages";
 import type { Twin } from "../state/twin";
 import { h } from "../ui/dom";
 import { Cell, watchAll } from "../state/cell";
-import { ramps, roundStep } from "./colour";
+import { ramps, speedScale_mps } from "./colour";
 import { groundGeometry, rampTextureOf, type Draped } from "./ground";
 import type { Box } from "./labels";
 import { Daylight } from "./natural/daylight";
@@ -61,8 +61,8 @@ export class Stage {
   readonly rig: Rig;
   readonly views = new Map<ScenarioName, ScenarioView>();
   readonly stats: Stats;
-  /** Speed at the upper end of the colours; it grows with the displayed speeds, in round steps. */
-  readonly fastest_mps = new Cell(10);
+  /** Speed at the upper end of the colours: the largest of the scenarios' runs so far, rounded up. */
+  readonly fastest_mps = new Cell(speedScale_mps([]));
   /** Counts changes of the ground. */
   readonly sinkings = new Cell(0);
   /** Pictures are asked for one by one: none is drawn between. */
@@ -103,12 +103,12 @@ export class Stage {
       this.invalidate();
     });
     window.talusStats = this.stats;
-    new ResizeObserver(() => this.resize()).observe(this.element);
-    for (const name of scenarioNames) {
-      twin.cells[name].state.watch((state) => {
-        if (state && state.largest_speed_mps > this.fastest_mps.value) this.fastest_mps.value = roundStep(state.largest_speed_mps);
-      });
-    }
+    // A new size clears the canvas, after this display frame's picture was drawn: without another one the view would be blank.
+    new ResizeObserver(() => {
+      this.resize();
+      if (!this.filming) this.draw(performance.now());
+    }).observe(this.element);
+    watchAll(twin.every("state"), () => (this.fastest_mps.value = speedScale_mps(twin.every("state").map((cell) => cell.value))));
     twin.shown.watch((names) => this.arrange(names));
     watchAll([twin.look, twin.layer, twin.surface, twin.shown], () => this.shine());
     twin.moment.watch((moment) => {

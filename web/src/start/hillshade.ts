@@ -18,8 +18,8 @@ export class Hillshade {
   private readonly again = button("Draw again", { class: "small", onclick: () => this.clear() });
   readonly element = h("div", { class: "hillshade-box" }, this.canvas,
     h("div", { class: "row hillshade-tools" }, this.back, this.again,
-      button("Larger", { icon: "plus", bare: true, class: "bare small", onclick: () => this.zoom(1.6) }),
-      button("All of it", { icon: "fit", bare: true, class: "bare small", onclick: () => this.fit() }), this.place), this.told);
+      button("Zoom in", { icon: "plus", bare: true, class: "bare small", onclick: () => this.zoom(1.6) }),
+      button("Fit to terrain", { icon: "fit", bare: true, class: "bare small", onclick: () => this.fit() }), this.place), this.told);
   private grid: Grid | null = null;
   private picture: HTMLCanvasElement | null = null;
   private corners: Place[] = [];
@@ -90,8 +90,8 @@ export class Hillshade {
   }
   private say(): void {
     this.back.disabled = this.again.disabled = this.corners.length === 0;
-    this.told.textContent = this.closed ? `The release is ${quantity(area(this.corners), "m2")} in plan. Its corners can be pulled.`
-      : this.corners.length === 0 ? "Draw the release: click its corners, and the first one again. Drag to move the map, turn the wheel to enlarge it."
+    this.told.textContent = this.closed ? `The release is ${quantity(area(this.corners), "m2")} in plan. Drag a corner to move it.`
+      : this.corners.length === 0 ? "Draw the release: click its corners, and the first one again. Drag to move the map, turn the wheel to zoom."
       : this.corners.length < 3 ? "Click the next corner." : "Click the first corner again, or press Enter, to close it.";
   }
 

@@ -22,13 +22,13 @@ export function jobText(job: Job): string {
   const so = job.count > 0 ? `${done} of ${job.kind === "calibration" ? "at most " : ""}${job.count} ${what}${failed}` : "";
   const because = job.message === "" ? "" : `: ${job.message}`;
   switch (job.state) {
-    case "waiting": return "Waits for the job before it";
+    case "waiting": return "Waiting for another job";
     case "running": {
-      if (done === 0) return "Begins";
+      if (done === 0) return "Starting";
       const left = aboutTime(job.wall_remaining_s);
       return `${so}${left ? ` · ${left} left` : ""}`;
     }
-    case "cancelling": return `${so} · ends after the present step`;
+    case "cancelling": return `${so} · stops after the current step`;
     case "done": return job.message !== "" ? job.message : `${done} ${what}${failed}`;
     case "cancelled": return `Cancelled${done > 0 ? ` after ${so}` : ""}`;
     case "interrupted": return `Not complete${because}`;
@@ -41,7 +41,7 @@ class Row {
   readonly element: HTMLElement;
   readonly state: string;
   private readonly text = h("span", { class: "job-text" });
-  private readonly bar = h("progress", { max: 1, "aria-label": "Share done" });
+  private readonly bar = h("progress", { max: 1, "aria-label": "Progress" });
 
   constructor(job: Job, actions: JobActions) {
     this.state = job.state;
@@ -53,7 +53,7 @@ class Row {
         h("div", { class: "grow" }, h("b", {}, name), this.text, isOpen(job) ? this.bar : null),
         h("div", { class: "job-acts" }, job.report !== null ? h("a", { class: "button", href: job.report, target: "_blank", rel: "noopener" }, "Report") : null,
         job.kind === "ensemble" && job.state === "done" ? button("Show on the scene", { class: "small", onclick: () => actions.open(job) }) : null,
-        ended && job.state !== "done" ? button(job.kind === "validation" ? "Start again" : "Continue", { class: "small", onclick: () => actions.resume(job) }) : null,
+        ended && job.state !== "done" ? button(job.kind === "validation" ? "Run again" : "Continue", { class: "small", onclick: () => actions.resume(job) }) : null,
         !ended ? button("Cancel", { class: "small", disabled: job.state === "cancelling", onclick: () => actions.cancel(job) }) : bare("Delete", "remove", () => actions.remove(job)))),
       h("details", { class: "job-more" }, h("summary", {}, "Command and files"), h("pre", {}, job.command), h("p", { class: "muted" }, job.folder)));
     this.show(job);

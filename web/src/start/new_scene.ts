@@ -2,26 +2,25 @@
 import type { Api } from "../protocol/api";
 import type { Checked, Draft, DraftRole, MendingOfTerrain, UploadLimits } from "../protocol/start";
 import { bytes, fixed } from "../state/format";
+import { heightsText, heightUnit, heightUnits } from "../state/heights";
 import { choice } from "../ui/choice";
 import { button, h } from "../ui/dom";
 import { Hillshade } from "./hillshade";
 
 const check_ms = 500;
-const foot = 0.3048;
-const surveyFoot = 1200 / 3937;
 
 const slots: readonly (readonly [DraftRole, string, string])[] = [
-  ["terrain", "Terrain", "An elevation model: GeoTIFF, ASCII grid or another raster. Needed."],
+  ["terrain", "Terrain", "An elevation model: GeoTIFF, ASCII grid or another raster. Required."],
   ["release", "Release", "Polygons, or a raster of thickness in metres. Or draw it on the hillshade."],
   ["buildings", "Buildings", "Footprints (GeoPackage, GeoJSON, zipped Shapefile) or CityJSON, OBJ, glTF."],
   ["orthophoto", "Orthophoto", "A picture of the ground from above, with its position."],
-  ["bundle", "A whole scene", "In place of all this: a ZIP archive that talus made."],
+  ["bundle", "A whole scene", "Instead of the files above: a ZIP archive saved by talus."],
 ];
 
 export class NewScene {
   private readonly said = h("div", { class: "new-said", "aria-live": "polite" });
   private readonly title = h("input", { type: "text", maxlength: 100, "aria-label": "Title of the scene", placeholder: "Title", oninput: () => this.later() });
-  private readonly amount = h("input", { type: "number", step: "any", min: 0, "aria-label": "Thickness or volume", placeholder: "as in the file, or 2", onchange: () => this.later() });
+  private readonly amount = h("input", { type: "number", step: "any", min: 0, "aria-label": "Thickness or volume", placeholder: "Default 2 m", onchange: () => this.later() });
   private readonly unit = h("span", { class: "muted" }, "m, normal to the slope");
   private readonly amounts = h("div", { class: "row wrap" }, choice("How much is released", [["thickness", "Thickness"], ["volume", "Volume"]], "thickness", (value) => {
     this.byVolume = value === "volume";
@@ -35,6 +34,8 @@ export class NewScene {
   readonly element: HTMLElement;
   private draft: Draft | null = null;
   private byVolume = false;
+  /** Its user has said what the unit of the heights is, so that the file's own is no longer proposed. */
+  private heightsChosen = false;
   private mending: MendingOfTerrain = { epsg: null, metric: false, metres_per_unit: null, nodata: null };
   /** Counts what was asked, so that an answer to an earlier state is not shown. */
   private asked = 0;
@@ -46,7 +47,7 @@ export class NewScene {
     const left = h("div", { class: "new-files" }, ...slots.map(([role, name, hint]) => this.slot(role, name, hint)));
     this.element = h("section", { class: "new-scene", "aria-labelledby": "new-scene" },
       h("div", { class: "start-title" }, h("h2", { id: "new-scene" }, "New scene"), button("Discard", { class: "quiet", onclick: () => void this.discard() })),
-      h("p", { class: "muted" }, `Drop files here. They stay on the computer that runs talus: up to ${bytes(limits.bytes)} together, ${Math.round(limits.cells / 1e6)} million cells.`),
+      h("p", { class: "muted" }, `Drop files here. They stay on the computer that runs talus. Limits: ${bytes(limits.bytes)} together, ${Math.round(limits.cells / 1e6)} million cells.`),
       h("div", { class: "new-columns" }, left, h("div", { class: "new-map" }, this.hillshade.element, this.amounts)),
       this.said, h("div", { class: "row new-last" }, this.title, this.create));
     this.hillshade.show(null);
@@ -71,7 +72,7 @@ export class NewScene {
         event.preventDefault();
         card.classList.remove("over");
         const files = [...(event.dataTransfer?.files ?? [])];
-        if (files.length > 1) return this.complain("Several files were dropped. What belongs together, such as the parts of a Shapefile, is packed in one ZIP archive first.");
+        if (files.length > 1) return this.complain("Several files were dropped. Pack files that belong together, such as the parts of a Shapefile, into one ZIP archive.");
         if (files[0]) void this.upload(role, files[0]);
       } },
       h("div", { class: "row" }, holder, input, button("Choose", { class: "small", "aria-label": `Choose a file: ${name}`, onclick: () => input.click() })));
@@ -82,10 +83,14 @@ export class NewScene {
   }
 
   private async upload(role: DraftRole, file: File): Promise<void> {
-    if (this.draft && file.size > this.draft.bytes_left) return this.complain(`${file.name} has ${bytes(file.size)}; ${bytes(this.draft.bytes_left)} may still come. Cut it to the part that matters.`);
+    if (this.draft && file.size > this.draft.bytes_left) return this.complain(`${file.name} has ${bytes(file.size)}; ${bytes(this.draft.bytes_left)} are left of the limit. Crop it to the area of interest.`);
     if (file.size === 0) return this.complain(`${file.name} is empty.`);
+    if (role === "terrain") this.heightsChosen = false;
     if (role === "terrain") this.mending = { epsg: null, metric: false, metres_per_unit: null, nodata: null };
-    await this.change(`${file.name} is read …`, () => this.api.uploadToDraft(this.id, role, file));
+    await this.change("Uploading… 0 %", () => this.api.uploadToDraft(this.id, role, file, (share) => this.tell(share < 1 ? `Uploading… ${Math.floor(100 * share)} %` : `Reading ${file.name}…`)));
+  }
+  private tell(what: string): void {
+    this.said.replaceChildren(h("p", { class: "card", role: "status" }, what));
   }
   /** Asks for another state of the draft and shows it. */
   private async change(what: string, ask: () => Promise<Draft>): Promise<void> {
@@ -93,7 +98,7 @@ export class NewScene {
     ++this.asked;
     ++this.busy;
     this.create.disabled = true;
-    this.said.replaceChildren(h("p", { class: "card" }, what));
+    this.tell(what);
     try {
       const draft = await ask();
       this.draft = draft;
@@ -113,7 +118,7 @@ export class NewScene {
       const file = draft.files[role];
       place?.card.classList.toggle("has", file !== undefined);
       place?.holder.replaceChildren(h("b", {}, name), file === undefined ? h("span", { class: "muted" }, hint)
-        : h("span", { class: "new-file" }, `${file.name} · ${bytes(file.bytes)}`, button(`Take ${file.name} away`, { icon: "close", bare: true, class: "bare quiet small", onclick: () => void this.change("…", () => this.api.removeFromDraft(this.id, role)) })));
+        : h("span", { class: "new-file" }, `${file.name} · ${bytes(file.bytes)}`, button(`Remove ${file.name}`, { icon: "close", bare: true, class: "bare quiet small", onclick: () => void this.change("…", () => this.api.removeFromDraft(this.id, role)) })));
     }
     this.showMendings(draft);
     this.showAmounts(draft);
@@ -128,7 +133,7 @@ export class NewScene {
     if (terrain === null) return this.mendings.replaceChildren();
     const mend = (part: Partial<MendingOfTerrain>): void => {
       const wanted = { ...this.mending, ...part };
-      void this.change("The terrain is corrected …", async () => {
+      void this.change("Converting the terrain…", async () => {
         const changed = await this.api.mendDraft(this.id, wanted);
         this.mending = wanted;
         return changed;
@@ -138,29 +143,35 @@ export class NewScene {
     const epsg = h("input", { type: "number", min: 1024, max: 999999, value: this.mending.epsg ?? "", placeholder: "2326", "aria-label": "EPSG code of the terrain" });
     const nodata = h("input", { type: "number", step: "any", value: this.mending.nodata ?? "", placeholder: "none", "aria-label": "Value that means no data", onchange: () => mend({ nodata: numberOf(nodata) }) });
     const factor = this.mending.metres_per_unit;
-    const unit = h("select", { "aria-label": "Unit of the heights", onchange: () => mend({ metres_per_unit: unit.value === "" ? null : Number(unit.value) }) },
-      ...[["", terrain.value_unit === "" || factor !== null ? "metres" : `as stated: ${terrain.value_unit}`], [String(foot), "feet"], [String(surveyFoot), "US survey feet"]].map(([value, text]) =>
-        h("option", { value, selected: value === (factor === null ? "" : String(factor)) }, text)));
+    // Heights of a file in feet are in feet, unless its user says otherwise: a conversion of the cells alone would leave them.
+    const proposed = heightUnit(factor, this.heightsChosen ? null : terrain.height_unit_m);
+    const units = heightUnits(proposed);
+    const unit = h("select", { "aria-label": "Unit of the heights", onchange: () => {
+      this.heightsChosen = true;
+      mend({ metres_per_unit: unit.value === "" ? null : Number(unit.value) });
+    } }, ...units.map(([value, text]) => h("option", { value: value === null ? "" : String(value), selected: value === proposed }, text)));
+    const unitName = units.find(([value]) => value === proposed)?.[1] ?? "";
     const rows = [
-      terrain.crs === "" || this.mending.epsg !== null ? h("div", { class: "row" }, h("span", {}, "It is in EPSG:"), epsg, button("Apply", { class: "small", onclick: () => mend({ epsg: numberOf(epsg) }) })) : null,
-      this.mending.metric ? button("Leave it as it was", { class: "small", onclick: () => mend({ metric: false }) })
-        : terrain.problem !== null && terrain.metric_crs !== "" ? button(`Bring it onto square cells in metres (${terrain.metric_crs})`, { class: "small", onclick: () => mend({ metric: true }) }) : null,
+      terrain.crs === "" || this.mending.epsg !== null ? h("div", { class: "row" }, h("span", {}, "Reference system, EPSG:"), epsg, button("Apply", { class: "small", onclick: () => mend({ epsg: numberOf(epsg) }) })) : null,
+      this.mending.metric ? button("Undo conversion", { class: "small", onclick: () => mend({ metric: false }) })
+        : terrain.problem !== null && terrain.metric_crs !== "" ? button(`Convert to square cells in metres (${terrain.metric_crs})`, { class: "small", onclick: () => mend({ metric: true, metres_per_unit: proposed }) }) : null,
+      proposed !== factor ? h("div", { class: "row wrap" }, h("span", {}, `The file suggests heights in ${unitName}.`), button(`Convert heights from ${unitName}`, { class: "small", onclick: () => mend({ metres_per_unit: proposed }) })) : null,
       h("div", { class: "row wrap" }, h("label", {}, "Heights are in ", unit), h("label", {}, "no data is ", nodata)),
     ];
     this.mendings.replaceChildren(terrain.problem === null
-      ? h("p", { class: "muted" }, [`${terrain.columns} × ${terrain.rows} cells of ${fixed(terrain.cell_m ?? NaN, 2)} m`, terrain.crs, (terrain.nodata_share ?? 0) > 0 ? `${fixed(100 * (terrain.nodata_share ?? 0), 1)} % without data` : ""].filter((part) => part !== "").join(" · "))
+      ? h("p", { class: "muted" }, [`${terrain.columns} × ${terrain.rows} cells of ${fixed(terrain.cell_m ?? NaN, 2)} m`, heightsText(terrain.elevation_m), terrain.crs, (terrain.nodata_share ?? 0) > 0 ? `${fixed(100 * (terrain.nodata_share ?? 0), 1)} % without data` : ""].filter((part) => part !== "").join(" · "))
       : h("p", { class: "new-problem", role: "alert" }, terrain.problem), ...rows.filter((row) => row !== null));
   }
 
   private complain(sentence: string): void {
     this.create.disabled = true;
-    const outside = /lies outside|reaches beyond/.test(sentence) ? " Draw it on the hillshade, or take a terrain that reaches as far. A file without the right reference system also lands elsewhere." : "";
-    this.said.replaceChildren(h("div", { class: "card bad", role: "alert" }, h("b", {}, "Not yet a scene"), h("p", {}, sentence + outside)));
+    const outside = /lies outside|reaches beyond/.test(sentence) ? " Draw it on the hillshade, or use a terrain that covers it. Check the reference system of the file as well." : "";
+    this.said.replaceChildren(h("div", { class: "card bad", role: "alert" }, h("b", {}, "Not ready to run"), h("p", {}, sentence + outside)));
   }
   private say(): void {
     const { terrain, files } = this.draft ?? { terrain: null, files: {} as Draft["files"] };
-    const next = terrain === null ? "First of all, a terrain." : terrain.problem !== null ? "The terrain cannot be used as it is: see beside its name." : "Now the release: a file, or its outline drawn on the hillshade.";
-    if (files.bundle === undefined) this.said.replaceChildren(h("p", { class: "card" }, next));
+    const next = terrain === null ? "Start by choosing a terrain." : terrain.problem !== null ? "The terrain cannot be used as it is; the reason is given below its name." : "Next, the release: choose a file, or draw its outline on the hillshade.";
+    if (files.bundle === undefined) this.tell(next);
   }
   private get wanted(): { title: string; thickness_m: number | null; volume_m3: number | null; scar: [number, number][] | null } {
     const amount = this.amount.value === "" || this.amounts.hidden ? null : Number(this.amount.value);
@@ -181,7 +192,7 @@ export class NewScene {
   private async check(): Promise<void> {
     if (this.busy > 0) return;
     const asked = ++this.asked;
-    this.said.replaceChildren(h("p", { class: "card" }, "It is checked …"));
+    this.tell("Checking the scene…");
     try {
       const found = await this.api.makeOfDraft(this.id, { ...this.wanted, check: true });
       if (asked === this.asked) this.showChecked(found);
@@ -191,7 +202,7 @@ export class NewScene {
   }
   private showChecked(found: Checked): void {
     this.create.disabled = false;
-    this.said.replaceChildren(h("div", { class: "card new-good" }, h("b", {}, "This can be run"), h("pre", {}, found.summary),
+    this.said.replaceChildren(h("div", { class: "card new-good" }, h("b", {}, "Ready to run"), h("pre", {}, found.summary),
       found.notes.length === 0 ? null : h("ul", {}, ...found.notes.map((note) => h("li", {}, note)))));
   }
   private async finish(): Promise<void> {

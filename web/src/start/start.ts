@@ -129,7 +129,7 @@ class Start {
         const open = h("button", { type: "button", class: "start-row", disabled: busy || scene.missing, "data-scene": scene.id, onclick: () => void this.open({ scene: scene.id }, scene.title) },
           icon("layers"), h("span", { class: "grow" }, h("b", {}, scene.title || "Scene without a title"), h("span", { class: "muted path" }, scene.missing ? `${where} is no longer there` : where)),
           scene.opened_at ? h("span", { class: "muted date" }, dateText(scene.opened_at)) : null);
-        const forget = scene.kind === "recent" ? button(`Take ${scene.title} off this list`, { icon: "close", bare: true, class: "bare quiet", onclick: () => void this.attempt(() => this.api.forgetScene(scene.id)) }) : null;
+        const forget = scene.kind === "recent" ? button(`Remove ${scene.title} from this list`, { icon: "close", bare: true, class: "bare quiet", onclick: () => void this.attempt(() => this.api.forgetScene(scene.id)) }) : null;
         const name = scene.title || "this scene";
         const fetch = scene.missing ? null : button(`Download ${name} with all its files`, { icon: "download", bare: true, class: "bare quiet", onclick: () => void this.attempt(async () => save(`${fileName(name)}.zip`, await this.api.sceneBundle(scene.id))) });
         const compute = scene.missing || !this.now.jobs ? null : button(`Ensemble or calibration of ${name}`, { icon: "bars", bare: true, class: "bare quiet", onclick: () => this.makeJob(scene.id) });

@@ -6,8 +6,8 @@ import { aboutTime } from "./time_left";
 export class MisfitScale {
   constructor(readonly low: number, readonly high: number) {}
 
-  static of(status: Pick<CalibrationStatus, "runs" | "map">): MisfitScale {
-    const all = [...status.runs.map((r) => r.misfit), ...(status.map?.misfit ?? [])].filter((v): v is number => v !== null);
+  static of(status: Pick<CalibrationStatus, "runs" | "fast_runs" | "map">): MisfitScale {
+    const all = [...[...status.runs, ...status.fast_runs].map((r) => r.misfit), ...(status.map?.misfit ?? [])].filter((v): v is number => v !== null);
     if (all.length === 0) return new MisfitScale(0, 1);
     const low = Math.min(...all);
     const high = Math.max(...all);
@@ -37,6 +37,13 @@ export function firstRange(parameter: Parameter, present: number | null): [numbe
   return [Number(low.toPrecision(3)), Number((high > low ? high : low + 1).toPrecision(3))];
 }
 
+/** Which parameters are free before anything was chosen: with the depth-averaged model only what it has a use for. */
+export const startsFree = (parameter: Parameter, depthAveraged: boolean): boolean =>
+  freeAtFirst.includes(parameter.key) && (!depthAveraged || parameter.used_by_depth_averaged);
+
+/** What a maximum number of runs becomes where the other way of searching is chosen: what was typed stays. */
+export const runsAfterChoice = (typed: boolean, runs: number, usual: number): number => (typed && Number.isFinite(runs) ? runs : usual);
+
 /** Why these cannot be the ends of a range; null: they can. */
 export function rangeProblem(parameter: Parameter, low: number, high: number): string | null {
   const { range } = parameter;
@@ -49,10 +56,12 @@ export function rangeProblem(parameter: Parameter, low: number, high: number): s
 
 const phases = { design: "spread over the ranges", search: "search for the best", check: "checks of the result" };
 
+const counted = (runs: number): string => `${runs} ${runs === 1 ? "run" : "runs"}`;
+
 /** Progress of a calibration, in a sentence. */
 export function progressText(status: CalibrationStatus): string {
-  const fast = status.fast_runs_at_most > 0 ? `${status.fast_runs} of at most ${status.fast_runs_at_most} runs depth-averaged, ` : "";
-  const computed = `${status.runs.length} ${status.runs.length === 1 ? "run" : "runs"}`;
+  const fast = status.fast_runs_at_most > 0 ? `${status.fast_runs.length} of at most ${status.fast_runs_at_most} runs depth-averaged, ` : "";
+  const computed = `${counted(status.runs.length)}${fast ? ` of particles and ${status.fast_runs.length} depth-averaged` : ""}`;
   const done = `${fast}${status.runs.length} of at most ${status.runs_at_most} runs${fast ? " of particles" : ""}`;
   const failed = status.runs_failed > 0 ? `, ${status.runs_failed} failed` : "";
   switch (status.state) {
@@ -61,7 +70,7 @@ export function progressText(status: CalibrationStatus): string {
       const left = aboutTime(status.wall_remaining_s);
       return `${done}${failed}${status.phase ? ` · ${phases[status.phase]}` : ""}${left ? ` · ${left} left at most` : ""}`;
     }
-    case "cancelling": return `${done}${failed} · ends after the present step`;
+    case "cancelling": return `${done}${failed} · stops after the current step`;
     case "cancelled": return `Cancelled after ${computed}${failed}`;
     case "failed": return `Ended after ${computed}${failed}: ${status.message}`;
     case "done": return `${computed}${failed}${status.result?.settled ? ": no further gain expected" : "; stopped at the maximum number"}${status.message ? `. ${status.message}` : ""}`;

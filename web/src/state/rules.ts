@@ -27,7 +27,7 @@ export function limitsOf(section: keyof typeof fields, key: string, scene: Given
   const least = leastOf(section, key, scene) * about.factor;
   if (least > low) {
     low = least;
-    said.push(`At least ${tick(least)} ${about.unit}: ${tie.why}.`);
+    said.push(`Minimum ${tick(least)} ${about.unit}; ${tie.why}.`);
   }
   const above = tie.below === undefined ? null : (values as Record<string, unknown>)[tie.below];
   if (tie.below !== undefined && typeof above === "number" && above * about.factor <= high) {

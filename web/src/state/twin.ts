@@ -9,6 +9,7 @@ import type { Relief } from "../scene/relief";
 import { Cell } from "./cell";
 import { fields } from "../protocol/schema";
 import type { BarrierSet } from "./barriers";
+import { beginsScenario } from "./edits";
 import { usualBed, usualZone, type ZoneSet } from "./ground";
 import { usualHydrograph } from "./inflows";
 import { runKey, runKeys } from "./alerts";
@@ -41,12 +42,6 @@ export const probeColours = ["#0072b2", "#d55e00", "#009e73", "#b8428c", "#c7850
 const nameKey = "talus-name";
 const habitKey = "talus-edits";
 const lookKey = "talus-look";
-
-/** Whether an action changes results. Starting a release is part of running. */
-function isEdit(action: Action): boolean {
-  if ("id" in action && "name" in action && Object.keys(action).length === 3) return false;
-  return /^(put|remove|set)_/.test(action.action) ? action.action !== "set_speed" : action.action === "undo" || action.action === "redo";
-}
 
 export class Twin {
   readonly connection = new Cell<{ state: Connection; retryIn_s: number }>({ state: "connecting", retryIn_s: 0 });
@@ -219,7 +214,7 @@ export class Twin {
       await this.beginning; // a scenario that is being made is the one to change
       const scenario = this.edited.value;
       const begun = (this.cells[scenario].state.value?.step ?? 0) > 0;
-      if (!begun || !isEdit(action)) return await this.api.act(scenario, action);
+      if (!begun || !beginsScenario(action)) return await this.api.act(scenario, action);
       const habit = this.habit.value ?? (await this.askHabit(scenario));
       if (habit === null) return null;
       this.setHabit(habit);

@@ -6,7 +6,7 @@ const head = /* glsl */ `
   ${airHead}
   uniform sampler2D uTrail, uShade;
   uniform vec4 uTrailPlacing, uShadePlacing;
-  uniform float uFlowTime, uPhotoGain;
+  uniform float uFlowTime, uPhotoGain, uSea;
   struct Surface {
     vec3 albedo;
     vec2 slope;   // of what is finer than the mesh
@@ -65,6 +65,12 @@ const head = /* glsl */ `
     return s;
   }
 
+  // Models of the ground have the sea as level ground at 0 m, or a little below.
+  void laySea(inout Surface s, vec3 at, vec3 n) {
+    float sea = uSea * smoothstep(0.3, 0.1, at.z + uOriginZ) * smoothstep(0.9990, 0.9999, n.z);
+    if (sea > 0.0) lay(s, vec3(0.012, 0.034, 0.046), 0.03 * noiseAt(at.xy, 11.0).xy + 0.02 * noiseAt(at.yx, 3.1).xy, 0.9, sea);
+  }
+
   // Earth that debris has run over: scoured, dark and wet, strewn with what it left.
   void layTrail(inout Surface s, vec2 at) {
     vec2 uv = (at - uTrailPlacing.xy) * uTrailPlacing.zw;
@@ -115,6 +121,7 @@ const colour = /* glsl */ `
       naturalOpen = 0.75;
     } else {
       natural = bareGround(vLocal, n);
+      laySea(natural, vLocal, n);
       naturalOpen = 0.25 + 0.75 * smoothstep(0.30, 0.95, vShade);
       if (uPhotoShown > 0.5) {
         vec4 photo = texture2D(uPhoto, (vLocal.xy - uPhotoPlacing.xy) * uPhotoPlacing.zw);
