@@ -1,5 +1,5 @@
 import { describe, expect, it } from "vitest";
-import type { Parameter, Setup } from "../src/protocol/messages";
+import type { Figure, Parameter, Setup } from "../src/protocol/messages";
 import { comparisonRows, differenceText, type Side } from "../src/state/comparison";
 import { changesText, differences } from "../src/state/differences";
 
@@ -46,6 +46,15 @@ describe("gauges in the table", () => {
       { group: "Gauges", name: "bridge, arrival", unit: "s", a: 12, b: null },
       { group: "Gauges", name: "bridge, peak depth", unit: "m", a: 2, b: 0 },
       { group: "Gauges", name: "bridge, peak speed", unit: "m/s", a: 6, b: 0 }]);
+  });
+});
+
+describe("rows of a time of the recording", () => {
+  it("say so, while figures and points are of the runs so far", () => {
+    const side = (depth_m: number): Side => ({ setup: null, figures: [{ key: "k", name: "Run-out", value: 10, format: "", unit: "m", note: "", kind: "result" } as unknown as Figure],
+      impacts: null, points: [{ name: "point 1", depth_m, speed_mps: null, pressure_kPa: null }],
+      gauges: [{ name: "bridge", arrival_s: 1, depth_m: 0, speed_mps: 0, peak_depth_m: 2, peak_speed_mps: 3 }] });
+    expect([...new Set(comparisonRows(side(1), side(2), [], 20).map((row) => row.group))]).toEqual(["Key figures", "Gauges, until 20.0 s", "Points"]);
   });
 });
 

@@ -42,12 +42,41 @@ export async function testScenarios(run) {
     assert.equal((await setup("A")).parameters[key], first);
     assert.deepEqual((await setup("A")).changes, []);
     assert.equal(await page.locator(".pane").count(), 2);
-    await until(() => page.locator(".pane-name").allTextContents(), (t) => t[0] === `A, friction ${first}` && t[1] === "B, friction 0.3", "panes with their parameters");
+    await until(() => page.locator(".pane-name").allTextContents(), (t) => t[0]?.startsWith(`A, friction ${first},`) && t[1]?.startsWith("B, friction 0.3,"), "panes with their parameters");
     // B has not begun: it is edited without a new scenario.
     await setFriction(0.25);
     await until(() => setup("B"), (s) => s.parameters[key] === 0.25, "an edit of B");
     assert.equal(await dialog.count(), 0);
     await run.shot(page, "38-two");
+  });
+
+  await run.check("two at different times: each view, the clock, the table, the picture and the page say their own", async () => {
+    await until(() => page.locator(".pane-name").allTextContents(), (t) => /, 4\.0.s$/.test(t[0] ?? "") && /, 0\.0.s$/.test(t[1] ?? ""), "a time in each view");
+    assert.match(await page.textContent(".clock"), /^0\.00 s B$/);
+    await row("A").click();
+    await until(() => page.textContent(".clock"), (t) => /^4\.\d\d s A$/.test(t), "the clock of A");
+    await row("B").click();
+    await page.click("[data-tab=compare]");
+    await until(() => page.locator(".comparison thead th").allTextContents(), (t) => /^A 4\.0.s$/.test(t[1] ?? "") && /^B 0\.0.s$/.test(t[2] ?? ""), "a time above each column");
+    // What is written into pictures cannot be read back from them.
+    await page.evaluate(() => {
+      window.written = [];
+      const { fillText } = CanvasRenderingContext2D.prototype;
+      CanvasRenderingContext2D.prototype.fillText = function (text, ...at) {
+        window.written.push(text);
+        return fillText.call(this, text, ...at);
+      };
+    });
+    const report = await saved(page, () => page.click("button:has-text('Save the comparison')"));
+    const times = (await page.evaluate(() => window.written)).filter((text) => /t = /.test(text));
+    assert.deepEqual(times, ["A left: t = 4.0 s   B right: t = 0.0 s"]);
+    assert.match(report.bytes.toString(), /<th>A <small>4\.0.s<\/small><\/th><th>B <small>0\.0.s<\/small><\/th>/);
+    const line = await page.locator(".timeline").boundingBox();
+    await row("A").click();
+    await page.mouse.click(line.x + 0.5 * line.width, line.y + 0.5 * line.height);
+    await until(() => page.locator(".pane-name").allTextContents(), (t) => /, (1\.9|2\.0|2\.1).s$/.test(t[0] ?? "") && /, 0\.0.s$/.test(t[1] ?? ""), "the recording has no more of B");
+    await page.click(".live");
+    await row("B").click();
   });
 
   await run.check("run, pause and restart in Compare act on both scenarios, and B − A is not blank", async () => {

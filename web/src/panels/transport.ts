@@ -36,12 +36,14 @@ export function transport(twin: Twin, playback: Playback): HTMLElement {
     const state = twin.now.state.value;
     if (!state) return;
     const at = twin.replay_s.value ?? state.time_s;
-    clock.value = `${fixed(at, 2)} s`;
+    // Two that are shown may be at different times: this is that of one.
+    const whose = twin.shown.value.length > 1 ? ` ${twin.edited.value}` : "";
+    clock.replaceChildren(`${fixed(at, 2)} s`, whose ? h("small", {}, whose) : "");
     slider.max = String(state.end_time_s);
     if (document.activeElement !== slider || twin.replay_s.value === null) slider.value = String(at);
     slider.style.setProperty("--recorded", `${(100 * state.recording.last_s) / state.end_time_s}%`);
     slider.style.setProperty("--shown", `${(100 * at) / state.end_time_s}%`);
-    slider.setAttribute("aria-valuetext", `${fixed(at, 2)} s of ${fixed(state.end_time_s, 0)} s${twin.replay_s.value === null ? ", live" : ", from the recording"}`);
+    slider.setAttribute("aria-valuetext", `${fixed(at, 2)} s of ${fixed(state.end_time_s, 0)} s${whose && `, scenario${whose}`}${twin.replay_s.value === null ? ", live" : ", from the recording"}`);
     const going = state.status === "running" && twin.replay_s.value === null;
     const left = going ? aboutTime(timeLeft(state)) : "";
     ends.lastElementChild?.replaceChildren(`${left ? `${left} left · ` : ""}${fixed(state.end_time_s, 0)} s`);

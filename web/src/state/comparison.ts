@@ -39,7 +39,9 @@ function paired<T extends { name: string }>(group: string, key: (of: T) => strin
   });
 }
 
-export function comparisonRows(a: Side, b: Side, parameters: readonly Parameter[]): Row[] {
+/** until_s: time of the recording that houses, barriers and gauges are of; null: they are of the runs so far, as figures and points always are. */
+export function comparisonRows(a: Side, b: Side, parameters: readonly Parameter[], until_s: number | null = null): Row[] {
+  const until = until_s === null ? "" : `, until ${fixed(until_s, 1)} s`;
   const keys = a.setup && b.setup ? differingKeys([a.setup, b.setup]) : [];
   const given = parameters.filter((p) => keys.includes(p.key))
     .map((p): Row => ({ group: "Parameters", name: p.label, unit: p.unit, a: a.setup?.parameters[p.key] ?? null, b: b.setup?.parameters[p.key] ?? null }));
@@ -54,9 +56,9 @@ export function comparisonRows(a: Side, b: Side, parameters: readonly Parameter[
   const houses = (side: Side): Impact[] => hit(side).filter((i) => reached.has(i.id));
   const wet = new Set([...a.gauges, ...b.gauges].filter((g) => g.peak_depth_m > 0).map((g) => g.name));
   const gauges = (side: Side): GaugeReading[] => side.gauges.filter((g) => wet.has(g.name));
-  return [...given, ...figures, ...paired("Houses", (i: Impact) => i.id, houses(a), houses(b), atHouses),
-    ...paired("Barriers", (i: BarrierImpact) => i.id, a.impacts?.barriers ?? [], b.impacts?.barriers ?? [], atBarriers),
-    ...paired("Gauges", (g: GaugeReading) => g.name, gauges(a), gauges(b), atGauges),
+  return [...given, ...figures, ...paired(`Houses${until}`, (i: Impact) => i.id, houses(a), houses(b), atHouses),
+    ...paired(`Barriers${until}`, (i: BarrierImpact) => i.id, a.impacts?.barriers ?? [], b.impacts?.barriers ?? [], atBarriers),
+    ...paired(`Gauges${until}`, (g: GaugeReading) => g.name, gauges(a), gauges(b), atGauges),
     ...paired("Points", (p: PointPeaks) => p.name, a.points, b.points, atPoints)];
 }
 
