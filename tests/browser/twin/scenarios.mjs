@@ -91,6 +91,7 @@ export async function testScenarios(run) {
     await page.locator("label:has-text('B − A') input").check();
     const legend = page.locator(".legend").last();
     await until(() => legend.getAttribute("aria-label"), (t) => /B − A: colours from −[\d.]*[1-9]/.test(t ?? ""), "depths that differ");
+    await until(() => page.locator(".pane-map").allTextContents(), (t) => t.join("|") === "Map: B − A; debris of A|Map: B − A; debris of B", "the difference named in both views");
     await run.shot(page, "39-difference");
     await page.selectOption("select[aria-label^='Map layer']", "none");
   });
@@ -104,6 +105,11 @@ export async function testScenarios(run) {
     const read = (text) => Number(text.replace("−", "-").replace("+", ""));
     for (const [i, wanted] of [a, b, b - a].entries()) assert.ok(Math.abs(read(runOut[i]) - wanted) <= 0.006 * Math.max(a, b), `${runOut[i]} for ${wanted} m`);
     assert.deepEqual(told[0].slice(1).map(read), [first, 0.25, Number((0.25 - first).toPrecision(3))], told[0].join());
+    assert.ok(told.some(([name, one, other]) => /building friction/.test(name) && read(one) === first && read(other) === 0.25), "what follows friction");
+    for (const [name, ...values] of told) {
+      const [one, other, by] = values.map((text) => read(text.replace("\u202f", "")));
+      if (![one, other, by].some(Number.isNaN)) assert.ok(Math.abs(other - one - by) <= 0.51 * 10 ** -Math.min(...values.map((text) => text.split(".")[1]?.length ?? 0)), `${name}: ${values.join(" | ")}`);
+    }
     await run.shot(page, "41-numbers");
     const report = await saved(page, () => page.click("button:has-text('Save the comparison')"));
     assert.equal(report.name, "comparison.html");
@@ -179,7 +185,7 @@ export async function testScenarios(run) {
     const words = `friction coefficient ${first} -> 0.27 at 4.0 s`;
     await until(() => page.textContent(".readings .on-the-way"), (t) => t.includes(words), "marked above charts and tables");
     assert.match(await page.textContent(".legends .on-the-way"), /Changed on the way/);
-    assert.match(await row("A").textContent(), /4\.0 s, changed/);
+    assert.match(await row("A").textContent(), /4\.0 s; [\d.]+.m³ still moving, changed/);
     await page.click("[data-tab=time]");
     const chart = page.locator(".tab-panel:visible .chart-plot").first();
     await until(() => chart.getAttribute("aria-label"), (t) => /Changed on the way at 4/.test(t ?? ""), "marked in the chart");
@@ -241,7 +247,8 @@ export async function testScenarios(run) {
     await page.click(".run");
     await ended("A");
     await until(() => page.locator(".run-message:visible").count(), (n) => n === 1, "why it has ended");
-    await until(() => page.textContent(".status"), (t) => t === "End reached", "the end");
+    await until(() => page.textContent(".status"), (t) => /^End reached; [\d.]+.m³ still moving$/.test(t), "the end, and what still moves");
+    await run.shot(page, "44-end");
     const line = await page.locator(".timeline").boundingBox();
     await page.mouse.click(line.x + 0.4 * line.width, line.y + 0.5 * line.height);
     await until(() => page.textContent(".status"), (t) => t === "Recording", "the recording");

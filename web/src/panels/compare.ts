@@ -5,13 +5,13 @@ import { watchAll } from "../state/cell";
 import { comparisonRows, differenceText, untouched, type PointPeaks, type Row, type Side } from "../state/comparison";
 import { changesText, paneText } from "../state/differences";
 import { fixed, tick, unitText } from "../state/format";
+import { standingText } from "../state/standing";
 import { pressures } from "../state/pressures";
 import type { Probe, Twin } from "../state/twin";
 import { button, h } from "../ui/dom";
 import { comparisonReport } from "./comparison_report";
 import { save } from "../ui/save";
 import type { Picture } from "./picture";
-import { statusWords } from "./transport";
 
 const peak = (column: readonly (number | null)[]): number | null => column.reduce<number | null>((most, v) => (v === null ? most : Math.max(most ?? v, v)), null);
 const peaksOf = (probe: Probe, i: number, name: ScenarioName): PointPeaks => {
@@ -24,7 +24,7 @@ export const shownValue = (value: number | string | null): string => (typeof val
 export function standing(twin: Twin, name: ScenarioName): string {
   const { state, setup } = twin.cells[name];
   const changes = changesText(setup.value);
-  return `${state.value ? `${statusWords[state.value.status]}, ${fixed(state.value.time_s, 1)} s` : ""}${changes ? `; changed on the way: ${changes}` : ""}`;
+  return `${state.value ? standingText(state.value) : ""}${changes ? `; changed on the way: ${changes}` : ""}`;
 }
 
 /** How far a run has come, which its figures are of. */

@@ -3,6 +3,7 @@ import { scenarioNames } from "../protocol/frame";
 import { watchAll } from "../state/cell";
 import { fixed } from "../state/format";
 import type { Playback } from "../state/playback";
+import { standingText } from "../state/standing";
 import { aboutTime, timeLeft } from "../state/time_left";
 import type { Twin } from "../state/twin";
 import { button, h, icon, type IconName } from "../ui/dom";
@@ -11,8 +12,6 @@ const speeds: [string, string][] = [
   ["0.1", "0.1 × real time"], ["0.25", "0.25 ×"], ["0.5", "0.5 ×"], ["1", "1 × real time"], ["2", "2 ×"], ["4", "4 ×"], ["10", "10 ×"],
   ["", "Fastest"],
 ];
-
-export const statusWords = { running: "Running", paused: "Paused", at_rest: "At rest", ended: "End reached", fault: "Stopped by a fault" } as const;
 
 export function transport(twin: Twin, playback: Playback): HTMLElement {
   const run = button("Run", { class: "primary run", icon: "run", onclick: () => void toggle(twin) });
@@ -67,7 +66,7 @@ export function transport(twin: Twin, playback: Playback): HTMLElement {
       if (![...speed.options].some((o) => o.value === value)) speed.prepend(h("option", { value }, `${value} ×`));
       speed.value = value;
     }
-    status.textContent = state ? (twin.replay_s.value === null ? statusWords[state.status] : "Recording") : "";
+    status.textContent = state ? (twin.replay_s.value === null ? standingText(state, false) : "Recording") : "";
     status.dataset["status"] = twin.replay_s.value === null ? (state?.status ?? "") : "replay";
     status.title = twin.replay_s.value === null ? (state?.message ?? "") : "";
     live.classList.toggle("on", twin.replay_s.value === null);
