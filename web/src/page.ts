@@ -4,7 +4,7 @@ import "uplot/dist/uPlot.min.css";
 import { Probes } from "./charts/probes";
 import { sectionPanel } from "./charts/section";
 import { frontCharts, timeCharts } from "./charts/series_charts";
-import { alarmsPanel, triggerBanner } from "./panels/alerts";
+import { alarmBanner, alarmsPanel, triggerBanner } from "./panels/alerts";
 import { calibratePanel } from "./panels/calibrate";
 import { ComparePanel } from "./panels/compare";
 import { DepthAveragedPanel } from "./panels/depth_averaged";
@@ -144,7 +144,7 @@ function buildPage(page: HTMLElement, twin: Twin): void {
   const scale = scaleAndCompass(twin, stage, readOut);
   stage.covers = [bar.camera, bar.show, scale];
   // Legends stand below the picture: over it they would hide debris and houses.
-  const middle = h("main", { class: "middle" }, triggerBanner(twin), h("div", { class: "view" }, stage.element, bar.camera, bar.show, scale), key);
+  const middle = h("main", { class: "middle" }, alarmBanner(twin), triggerBanner(twin), h("div", { class: "view" }, stage.element, bar.camera, bar.show, scale), key);
   // Names of the two views stand below the bars, which wrap on a narrow page, and so does the ground in a plan. On a phone only the camera's is there.
   const bars = new ResizeObserver(() => {
     const below = bar.show.offsetHeight > 0 ? bar.show.offsetTop + bar.show.offsetHeight : bar.camera.offsetTop + bar.camera.offsetHeight;
