@@ -125,6 +125,21 @@ export async function testScenarios(run) {
     await page.click("[data-tab=time]");
     const chart = page.locator(".tab-panel:visible .chart-plot").first();
     await until(() => chart.getAttribute("aria-label"), (t) => /Moving A from .*Moving B from/.test(t ?? ""), "both curves");
+    for (const tab of ["time", "front"]) {
+      await page.click(`[data-tab=${tab}]`);
+      const legends = await until(() => page.locator(".tab-panel:visible .chart-plot:visible").evaluateAll((plots) => plots.map((plot) => [...plot.querySelectorAll(".u-series")].slice(1).map((row) => {
+        const style = getComputedStyle(row.querySelector(".u-marker"));
+        return { label: row.querySelector(".u-label").textContent, colour: style.borderTopColor, line: style.borderTopStyle };
+      }))), (all) => all.length > 1 && all.every((rows) => rows.length > 1), `legends of ${tab}`);
+      for (const rows of legends) {
+        assert.equal(new Set(rows.map((row) => row.colour)).size, rows.length, `one colour twice: ${JSON.stringify(rows)}`);
+        for (const { label, line } of rows) {
+          const dashed = tab === "time" ? / B$/.test(label) : /^(Debris|Depth-averaged)/.test(label);
+          assert.equal(line, dashed ? "dashed" : "solid", label);
+        }
+      }
+      await run.shot(page, `45-curves-${tab}`);
+    }
   });
 
   await run.check("restart, run and pause in Compare act on both", async () => {
