@@ -115,7 +115,7 @@ class LiveRun {
 
     [[nodiscard]] Status plan_obstacles(const Setup& next, Change& change) const;
     [[nodiscard]] Status plan_releases(const Setup& next, Change& change) const;
-    [[nodiscard]] Status seed(Change& change, const sim::Progress& progress) const;
+    [[nodiscard]] Status seed_debris(Change& change, const sim::Progress& progress) const;
     [[nodiscard]] bool begins_anew(const Change& change) const;
     [[nodiscard]] Status check_room(const ReleaseSetup& release, double particles) const;
     void put_in_force(Change& change);

@@ -188,7 +188,7 @@ Status LiveRun::plan_releases(const Setup& next, Change& change) const {
     return {};
 }
 
-Status LiveRun::seed(Change& change, const sim::Progress& progress) const {
+Status LiveRun::seed_debris(Change& change, const sim::Progress& progress) const {
     if (change.to_seed.empty()) return {};
     sim::Model alone = model();
     set_material(alone, change.next.material);
@@ -224,7 +224,7 @@ Result<std::shared_ptr<LiveRun::Change>> LiveRun::prepare(const Setup& next, con
         }
         TALUS_TRY(plan_releases(wanted, *change));
         if (begins_anew(*change)) return std::shared_ptr<Change>();
-        TALUS_TRY(seed(*change, progress));
+        TALUS_TRY(seed_debris(*change, progress));
         return change;
     });
 }

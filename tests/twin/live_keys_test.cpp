@@ -129,7 +129,6 @@ void expect_one_beginning(const Scenario& origin, const json& action) {
 /// A release is seeded with the material and beside the structures of its run, so any of these keys may matter.
 TEST(LiveKeys, begin_a_new_scenario_as_a_restart_and_a_run_of_its_values) {
     scene::Scene scene = channel_scene();
-    scene.spec.solver.particle_spacing = 0.8;
     const json beside = ring(west + 17, south + 27, west + 19, south + 33);
     const json under = ring(west + 4, south + 24, west + 40, south + 36);
     const Shape shapes[] = {
@@ -138,7 +137,11 @@ TEST(LiveKeys, begin_a_new_scenario_as_a_restart_and_a_run_of_its_values) {
          {{"action", "put_barrier"}, {"line", {{west + 17, south + 22}, {west + 17, south + 38}}}, {"height_m", 5}}},
         {"release", "releases", {{"action", "put_release"}, {"polygon", beside}, {"thickness_m", 1.5}}},
         {"buildings", "buildings", {{"action", "put_building"}, {"footprint", beside}, {"height_m", 5}}},
-        {"inflow", "inflows", {{"action", "put_inflow"}, {"polygon", beside}, {"hydrograph", {row(0), row(2)}}}},
+        {"inflow",
+         "inflows",
+         {{"action", "put_inflow"},
+          {"polygon", ring(west + 20, south + 24, west + 40, south + 36)},
+          {"hydrograph", {row(0), row(2)}}}},
         {"zone", "zones", {{"action", "put_zone"}, {"polygon", under}, {"friction_coefficient", 0.5}}},
         {"bed", "beds", {{"action", "put_bed"}, {"polygon", under}, {"depth_m", 0.5}, {"growth_rate_per_m", 0.02}}}};
     const auto plain = open(scene);
@@ -156,7 +159,7 @@ TEST(LiveKeys, begin_a_new_scenario_as_a_restart_and_a_run_of_its_values) {
         for (const params::Parameter& parameter : params::find_section(shape.section)->parameters) {
             if (parameter.live.empty()) continue;
             json action = change;
-            action[parameter.live] = value_of(parameter);
+            action[parameter.live] = parameter.live == "crest_elevation_m" ? json(25) : value_of(parameter);
             expect_one_beginning(*with_shape, action);
         }
         if (shape.section != std::string("inflow")) continue;
@@ -179,6 +182,7 @@ TEST(LiveKeys, of_structures_far_from_the_release_change_the_run_in_place) {
     scene.spec.solver.particle_spacing = 0.8;
     add_building(scene, "house", rectangle(west + 38, south + 27, west + 42, south + 33), 6);
     const auto edited = open(scene);
+    const observe::Observer* begun = &edited->observer();
     act(*edited,
         {{"action", "put_barrier"}, {"line", {{west + 37, south + 22}, {west + 37, south + 38}}}, {"height_m", 2}});
     act(*edited, {{"action", "put_building"},
@@ -186,7 +190,7 @@ TEST(LiveKeys, of_structures_far_from_the_release_change_the_run_in_place) {
                   {"height_m", 5}});
     act(*edited, {{"action", "put_barrier"}, {"id", "barrier-1"}, {"height_m", 1}});
     act(*edited, {{"action", "remove_building"}, {"id", "building-1"}});
-    EXPECT_EQ(edited->journal_json()["actions"].size(), 4U);
+    EXPECT_EQ(begun, &edited->observer()) << "the run was started anew";
     const auto again = edited->copy();
     ASSERT_TRUE(again) << again.error().message;
     run_until(*edited, 6);
