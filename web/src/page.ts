@@ -144,7 +144,7 @@ function buildPage(page: HTMLElement, twin: Twin): void {
   const scale = scaleAndCompass(twin, stage, readOut);
   stage.covers = [bar.camera, bar.show, scale];
   // Legends stand below the picture: over it they would hide debris and houses.
-  const middle = h("main", { class: "middle" }, alarmBanner(twin), triggerBanner(twin), h("div", { class: "view" }, stage.element, bar.camera, bar.show, scale), key);
+  const middle = h("main", { class: "middle" }, triggerBanner(twin), h("div", { class: "view" }, stage.element, bar.camera, bar.show, scale), key);
   // Names of the two views stand below the bars, which wrap on a narrow page, and so does the ground in a plan. On a phone only the camera's is there.
   const bars = new ResizeObserver(() => {
     const below = bar.show.offsetHeight > 0 ? bar.show.offsetTop + bar.show.offsetHeight : bar.camera.offsetTop + bar.camera.offsetHeight;
@@ -155,6 +155,7 @@ function buildPage(page: HTMLElement, twin: Twin): void {
   page.replaceChildren(
     h("header", { class: "topbar" }, setup, wordmark, h("h1", {}, twin.scene.title), badge, h("span", { class: "spring" }),
       people(twin), sessionButton(twin), ...exportButtons(twin, stage, picture), button("Help", { icon: "help", bare: true, class: "bare help", title: "Help and shortcuts (?)", onclick: help }), drawer),
+    alarmBanner(twin),
     controls(twin, drawing),
     middle,
     h("aside", { class: "readings", "aria-label": "Readings" }, handle, runCard(twin), changedOnTheWay(twin), readings.element, readings.panel),
