@@ -85,7 +85,9 @@ bool same_material(const params::MaterialSpec& a, const params::MaterialSpec& b)
     other.material = b;
     const auto& parameters = params::find_section("material")->parameters;
     return std::all_of(parameters.begin(), parameters.end(), [&](const params::Parameter& parameter) {
-        return parameter.get(one, 0) == parameter.get(other, 0);
+        const params::ParameterValue p = parameter.get(one, 0), q = parameter.get(other, 0);
+        const auto *x = std::get_if<double>(&p), *y = std::get_if<double>(&q);
+        return p.index() == q.index() && (x == nullptr || *x == *y);
     });
 }
 

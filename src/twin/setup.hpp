@@ -106,7 +106,7 @@ template <class Entry>
     return bodies;
 }
 
-/// Whether every key of the section has the same value in both.
+/// Whether every number of the section is the same in both, and given in both or neither.
 [[nodiscard]] bool same_material(const params::MaterialSpec& a, const params::MaterialSpec& b);
 
 /// Whether two bodies are the same except for their names.
