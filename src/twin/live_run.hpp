@@ -30,7 +30,8 @@ class LiveRun {
 
     /// Takes a step if ready.
     void advance();
-    /// A change to another setup: everything that can fail or takes long. It holds for the run as it is now.
+    /// A change to another setup: everything that can fail or takes long. It holds for the run as it is now. Null: no
+    /// step was taken yet, and only a run that is started with that setup has its debris.
     struct Change;
     [[nodiscard]] Result<std::shared_ptr<Change>> prepare(const Setup& next, const sim::Progress& progress = {}) const;
     void carry_out(Change& change);
@@ -113,7 +114,9 @@ class LiveRun {
     [[nodiscard]] run::Outlook outlook() const;
 
     [[nodiscard]] Status plan_obstacles(const Setup& next, Change& change) const;
-    [[nodiscard]] Status plan_releases(const Setup& next, Change& change, const sim::Progress& progress) const;
+    [[nodiscard]] Status plan_releases(const Setup& next, Change& change) const;
+    [[nodiscard]] Status seed_debris(Change& change, const sim::Progress& progress) const;
+    [[nodiscard]] bool begins_anew(const Change& change) const;
     [[nodiscard]] Status check_room(const ReleaseSetup& release, double particles) const;
     void put_in_force(Change& change);
     void replace_releases(sim::Model& model, sim::State& state, Change& change);

@@ -51,6 +51,9 @@ std::array<double, 7> holding_back(const sim::Model& model) {
             model.pore_pressure_ratio};
 }
 
+/// Structures farther from a release than this, in support radii, have no part in how its debris is seeded.
+constexpr double seeding_reach = 10;
+
 }  // namespace
 
 /// The effects of a change of setup.
@@ -69,6 +72,7 @@ struct LiveRun::Change {
         const ReleaseSetup* release;
         sim::State state;
     };
+    std::vector<const ReleaseSetup*> to_seed;  ///< of `next`
     std::vector<Seed> seeds;
     std::vector<bool> gone;  ///< by group: its debris is removed
 };
@@ -134,9 +138,9 @@ Status LiveRun::check_room(const ReleaseSetup& release, double particles) const 
                              particles * scene::bytes_per_particle / 1e9, max_live_particles)};
 }
 
-Status LiveRun::plan_releases(const Setup& next, Change& change, const sim::Progress& progress) const {
+Status LiveRun::plan_releases(const Setup& next, Change& change) const {
     change.gone.assign(groups_.size(), false);
-    std::vector<const ReleaseSetup*> to_seed;
+    std::vector<const ReleaseSetup*>& to_seed = change.to_seed;
     for (const ReleaseSetup& release : next.releases) {
         const Group* group = find_id(groups_, release.id);
         const ReleaseSetup* before = find_id(setup_.releases, release.id);
@@ -155,10 +159,6 @@ Status LiveRun::plan_releases(const Setup& next, Change& change, const sim::Prog
     }
     if (to_seed.empty()) return {};
 
-    sim::Model alone = model();
-    set_material(alone, next.material);
-    sim::Ground around = ground();
-    if (change.solids) around.solids = *change.solids;
     double particles = state().count;
     for (std::size_t g = 0; g < groups_.size(); ++g) {
         if (!change.gone[g]) continue;
@@ -185,11 +185,32 @@ Status LiveRun::plan_releases(const Setup& next, Change& change, const sim::Prog
                         "an action may take {:.0f} s. Remove obstacles or debris there first",
                         release->body->name, estimate, max_effort)};
     }
-    for (const ReleaseSetup* release : to_seed) {
+    return {};
+}
+
+Status LiveRun::seed_debris(Change& change, const sim::Progress& progress) const {
+    if (change.to_seed.empty()) return {};
+    sim::Model alone = model();
+    set_material(alone, change.next.material);
+    sim::Ground around = ground();
+    if (change.solids) around.solids = *change.solids;
+    for (const ReleaseSetup* release : change.to_seed) {
         TALUS_ASSIGN(sim::State seeded, seed_releases(alone, around, {*release->body}, progress));
         change.seeds.push_back({release, std::move(seeded)});
     }
     return {};
+}
+
+/// All debris of a run is seeded together, with the material and beside the structures of its start.
+bool LiveRun::begins_anew(const Change& change) const {
+    if (summary().step > 0) return false;
+    const Setup& next = change.next;
+    const double reach = seeding_reach * model().support_radius;
+    const bool near = std::any_of(next.releases.begin(), next.releases.end(), [&](const ReleaseSetup& release) {
+        return overlaps_any(release.body->extent().grown(reach), change.touched);
+    });
+    return near || change.cover || !begin_alike(next, begun_with_) || !same_material(next.material, setup_.material) ||
+           !same_shapes(next.releases, setup_.releases);
 }
 
 Result<std::shared_ptr<LiveRun::Change>> LiveRun::prepare(const Setup& next, const sim::Progress& progress) const {
@@ -201,7 +222,9 @@ Result<std::shared_ptr<LiveRun::Change>> LiveRun::prepare(const Setup& next, con
         if (!same_shapes(setup_.zones, wanted.zones)) {
             change->cover = zones_on_terrain(bodies_of(wanted.zones), ground().terrain).cover;
         }
-        TALUS_TRY(plan_releases(wanted, *change, progress));
+        TALUS_TRY(plan_releases(wanted, *change));
+        if (begins_anew(*change)) return std::shared_ptr<Change>();
+        TALUS_TRY(seed_debris(*change, progress));
         return change;
     });
 }

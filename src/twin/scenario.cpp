@@ -94,10 +94,8 @@ Status Scenario::Parts::start(const Setup& setup, const sim::Progress& progress)
 }
 
 Status Scenario::Parts::prepare(const Setup& next_setup, Prepared& prepared, const sim::Progress& progress) const {
-    if (run->summary().step > 0 || begin_alike(next_setup, run->begun_with())) {
-        TALUS_ASSIGN(prepared.change, run->prepare(next_setup, progress));
-        return {};
-    }
+    TALUS_ASSIGN(prepared.change, run->prepare(next_setup, progress));
+    if (prepared.change) return {};
     TALUS_ASSIGN(prepared.anew, LiveRun::start(*scene, next_setup, particle_spacing, options, progress));
     return prepared.anew->bring_to(next_setup);  // releases that were triggered
 }

@@ -63,7 +63,8 @@ struct Scenario::Parts {
     [[nodiscard]] Result<std::unique_ptr<LiveRun>> run_of(const Setup& setup, const sim::Progress& progress) const;
     /// `run` begins the journal anew.
     void take(std::unique_ptr<LiveRun> run);
-    /// The change of the run to a setup. Beds and inflows apply immediately only before the first step.
+    /// The change of the run to a setup. Before the first step it is to begin as that setup would: see
+    /// LiveRun::prepare(). After it, beds and inflows wait for the restart.
     [[nodiscard]] Status prepare(const Setup& next, Prepared& prepared, const sim::Progress& progress) const;
     void carry_out(Prepared& prepared);
     [[nodiscard]] Result<GaugeReading> prepare_gauge(const nlohmann::json& action, const ActionContext& context) const;

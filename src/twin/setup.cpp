@@ -79,6 +79,18 @@ scene::Scene scene_of(const scene::Scene& scene, const Setup& setup) {
     return changed;
 }
 
+bool same_material(const params::MaterialSpec& a, const params::MaterialSpec& b) {
+    params::SceneSpec one, other;
+    one.material = a;
+    other.material = b;
+    const auto& parameters = params::find_section("material")->parameters;
+    return std::all_of(parameters.begin(), parameters.end(), [&](const params::Parameter& parameter) {
+        const params::ParameterValue p = parameter.get(one, 0), q = parameter.get(other, 0);
+        const auto *x = std::get_if<double>(&p), *y = std::get_if<double>(&q);
+        return p.index() == q.index() && (x == nullptr || *x == *y);
+    });
+}
+
 bool same_shape(const std::shared_ptr<const terrain::Release>& a, const std::shared_ptr<const terrain::Release>& b) {
     if (a == b) return true;
     const auto& r = a->thickness_raster;

@@ -106,6 +106,9 @@ template <class Entry>
     return bodies;
 }
 
+/// Whether every number of the section is the same in both, and given in both or neither.
+[[nodiscard]] bool same_material(const params::MaterialSpec& a, const params::MaterialSpec& b);
+
 /// Whether two bodies are the same except for their names.
 [[nodiscard]] bool same_shape(const std::shared_ptr<const terrain::Release>& a,
                               const std::shared_ptr<const terrain::Release>& b);

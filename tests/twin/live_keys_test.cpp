@@ -1,5 +1,7 @@
 #include <gtest/gtest.h>
 
+#include "run/run.hpp"
+#include "sim/simulation.hpp"
 #include "twin/action.hpp"
 #include "twin/setup_file.hpp"
 #include "twin_fixtures.hpp"
@@ -92,6 +94,109 @@ TEST(LiveKeys, of_hydrographs_are_set_shown_written_and_read_back) {
         bad["hydrograph"][1].erase(parameter.key);
         EXPECT_NE(refusal(*scenario, bad).find("hydrograph[1]: " + parameter.key + ": missing"), std::string::npos);
     }
+}
+
+/// `restart` and `talus run` begin alike by themselves; a copy to which the action is applied must, too.
+void expect_one_beginning(const Scenario& origin, const json& action) {
+    const scene::Scene& scene = origin.scene();
+    const auto copy = origin.copy();
+    ASSERT_TRUE(copy) << copy.error().message;
+    Scenario& fresh = **copy;
+    const auto setup = read_setup(json::parse(fresh.journal_json()["first_setup"].dump()), scene);
+    ASSERT_TRUE(setup) << setup.error().message;
+    NextNumbers next{9, 9, 9, 9, 9, 9};
+    const ActionContext context{scene, *scene.spec.solver.particle_spacing, fresh.model().viscosity,
+                                [](const std::string&) { return false; }};
+    const auto edit = read_action(action, *setup, next, context);
+    ASSERT_TRUE(edit) << edit.error().message;
+    const auto run = run::Run::start(scene_of(scene, edit->setup));
+    ASSERT_TRUE(run) << run.error().message;
+
+    constexpr int steps = 10;
+    act(fresh, action);
+    const std::uint64_t begun = fresh.hash();
+    for (int step = 0; step < steps; ++step) fresh.advance();
+    const std::uint64_t later = fresh.hash();
+    act(fresh, {{"action", "restart"}});
+    EXPECT_EQ(begun, fresh.hash()) << "after the restart: " << action;
+    EXPECT_EQ(begun, hash_state((*run)->state())) << "talus run: " << action;
+    for (int step = 0; step < steps; ++step) fresh.advance();
+    for (int step = 0; step < steps; ++step) (*run)->advance();
+    EXPECT_EQ(later, fresh.hash()) << "after the restart: " << action;
+    EXPECT_EQ(later, hash_state((*run)->state())) << "talus run: " << action;
+}
+
+/// A release is seeded with the material and beside the structures of its run, so any of these keys may matter.
+TEST(LiveKeys, begin_a_new_scenario_as_a_restart_and_a_run_of_its_values) {
+    scene::Scene scene = channel_scene();
+    const json beside = ring(west + 17, south + 27, west + 19, south + 33);
+    const json under = ring(west + 4, south + 24, west + 40, south + 36);
+    const Shape shapes[] = {
+        {"barrier",
+         "barriers",
+         {{"action", "put_barrier"}, {"line", {{west + 17, south + 22}, {west + 17, south + 38}}}, {"height_m", 5}}},
+        {"release", "releases", {{"action", "put_release"}, {"polygon", beside}, {"thickness_m", 1.5}}},
+        {"buildings", "buildings", {{"action", "put_building"}, {"footprint", beside}, {"height_m", 5}}},
+        {"inflow",
+         "inflows",
+         {{"action", "put_inflow"},
+          {"polygon", ring(west + 20, south + 24, west + 40, south + 36)},
+          {"hydrograph", {row(0), row(2)}}}},
+        {"zone", "zones", {{"action", "put_zone"}, {"polygon", under}, {"friction_coefficient", 0.5}}},
+        {"bed", "beds", {{"action", "put_bed"}, {"polygon", under}, {"depth_m", 0.5}, {"growth_rate_per_m", 0.02}}}};
+    const auto plain = open(scene);
+    run_until(*plain, 0.3);
+    for (const params::Parameter* parameter : live_parameters()) {
+        expect_one_beginning(
+            *plain,
+            {{"action", "set_parameter"}, {"key", "material." + parameter->key}, {"value", value_of(*parameter)}});
+    }
+    for (const Shape& shape : shapes) {
+        expect_one_beginning(*plain, shape.put);
+        const auto with_shape = open(scene);
+        json change = {{"action", shape.put["action"]}, {"id", act(*with_shape, shape.put).created}};
+        run_until(*with_shape, 0.3);
+        for (const params::Parameter& parameter : params::find_section(shape.section)->parameters) {
+            if (parameter.live.empty()) continue;
+            json action = change;
+            action[parameter.live] = parameter.live == "crest_elevation_m" ? json(25) : value_of(parameter);
+            expect_one_beginning(*with_shape, action);
+        }
+        if (shape.section != std::string("inflow")) continue;
+        for (const params::Parameter& parameter : params::live_section("hydrograph").parameters) {
+            json rows = {row(0), row(2), row(4)};
+            for (json& each : rows) {
+                if (parameter.key != "time_s") each[parameter.key] = 7;
+            }
+            rows[1][parameter.key] = 3;
+            json action = change;
+            action["hydrograph"] = rows;
+            expect_one_beginning(*with_shape, action);
+        }
+    }
+}
+
+/// Far from the debris they are changed in place: nobody waits for debris to be seeded again.
+TEST(LiveKeys, of_structures_far_from_the_release_change_the_run_in_place) {
+    scene::Scene scene = channel_scene();
+    scene.spec.solver.particle_spacing = 0.8;
+    add_building(scene, "house", rectangle(west + 38, south + 27, west + 42, south + 33), 6);
+    const auto edited = open(scene);
+    const observe::Observer* begun = &edited->observer();
+    act(*edited,
+        {{"action", "put_barrier"}, {"line", {{west + 37, south + 22}, {west + 37, south + 38}}}, {"height_m", 2}});
+    act(*edited, {{"action", "put_building"},
+                  {"footprint", ring(west + 44, south + 27, west + 48, south + 33)},
+                  {"height_m", 5}});
+    act(*edited, {{"action", "put_barrier"}, {"id", "barrier-1"}, {"height_m", 1}});
+    act(*edited, {{"action", "remove_building"}, {"id", "building-1"}});
+    EXPECT_EQ(begun, &edited->observer()) << "the run was started anew";
+    const auto again = edited->copy();
+    ASSERT_TRUE(again) << again.error().message;
+    run_until(*edited, 6);
+    run_until(**again, 6);
+    EXPECT_EQ(edited->impacts_json()["barriers"][0]["hit"], true);
+    EXPECT_EQ(edited->hash(), (*again)->hash());
 }
 
 TEST(LiveKeys, of_older_journals_are_read_to_the_same_setup) {

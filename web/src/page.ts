@@ -4,7 +4,7 @@ import "uplot/dist/uPlot.min.css";
 import { Probes } from "./charts/probes";
 import { sectionPanel } from "./charts/section";
 import { frontCharts, timeCharts } from "./charts/series_charts";
-import { alarmsPanel, triggerBanner } from "./panels/alerts";
+import { alarmBanner, alarmsPanel, triggerBanner } from "./panels/alerts";
 import { calibratePanel } from "./panels/calibrate";
 import { ComparePanel } from "./panels/compare";
 import { DepthAveragedPanel } from "./panels/depth_averaged";
@@ -13,6 +13,7 @@ import { impactColour, impactsPanel, largestPressure } from "./panels/impacts";
 import { help, keys } from "./panels/keys";
 import { legends, scaleAndCompass } from "./panels/legends";
 import { controls } from "./panels/controls";
+import { paneNames } from "./panels/pane_names";
 import { people } from "./panels/people";
 import { Picture } from "./panels/picture";
 import { balance, runCard } from "./panels/run_card";
@@ -33,7 +34,6 @@ import { Sinking } from "./scene/sinking";
 import { Trails } from "./scene/natural/trails";
 import { Stage } from "./scene/stage";
 import { watchAll } from "./state/cell";
-import { paneText } from "./state/differences";
 import { takeFormer, whatIsGone, type FormerSession } from "./state/former_session";
 import { Playback } from "./state/playback";
 import { Refresher } from "./state/refresher";
@@ -79,6 +79,7 @@ function buildPage(page: HTMLElement, twin: Twin): void {
   const toasts = new Toasts();
   twin.onNotice((sentence, kind) => toasts.show(sentence, kind));
   showSetups(twin, stage);
+  paneNames(twin, stage, layers);
   followFront(twin, stage);
 
   const probes = new Probes(twin);
@@ -154,6 +155,7 @@ function buildPage(page: HTMLElement, twin: Twin): void {
   page.replaceChildren(
     h("header", { class: "topbar" }, setup, wordmark, h("h1", {}, twin.scene.title), badge, h("span", { class: "spring" }),
       people(twin), sessionButton(twin), ...exportButtons(twin, stage, picture), button("Help", { icon: "help", bare: true, class: "bare help", title: "Help and shortcuts (?)", onclick: help }), drawer),
+    alarmBanner(twin),
     controls(twin, drawing),
     middle,
     h("aside", { class: "readings", "aria-label": "Readings" }, handle, runCard(twin), changedOnTheWay(twin), readings.element, readings.panel),
@@ -162,7 +164,7 @@ function buildPage(page: HTMLElement, twin: Twin): void {
   );
 }
 
-/** Setups and impacts go to the views; the view that the controls edit is marked. */
+/** Setups and impacts go to the views. */
 function showSetups(twin: Twin, stage: Stage): void {
   for (const name of scenarioNames) {
     const put = (): void => {
@@ -181,13 +183,6 @@ function showSetups(twin: Twin, stage: Stage): void {
       stage.invalidate();
     });
   }
-  watchAll([twin.shown, twin.edited, ...twin.every("setup")], () => {
-    for (const name of twin.shown.value) {
-      const pane = stage.pane(name);
-      pane?.querySelector(".pane-name")?.remove();
-      if (twin.shown.value.length > 1) pane?.append(h("div", { class: `pane-name${name === twin.edited.value ? " edited" : ""}` }, paneText(twin, name)));
-    }
-  });
   watchAll([twin.names, twin.shown, twin.selection], () => {
     for (const view of stage.views.values()) {
       view.namesShown = twin.names.value;

@@ -42,12 +42,41 @@ export async function testScenarios(run) {
     assert.equal((await setup("A")).parameters[key], first);
     assert.deepEqual((await setup("A")).changes, []);
     assert.equal(await page.locator(".pane").count(), 2);
-    await until(() => page.locator(".pane-name").allTextContents(), (t) => t[0] === `A, friction ${first}` && t[1] === "B, friction 0.3", "panes with their parameters");
+    await until(() => page.locator(".pane-name").allTextContents(), (t) => t[0]?.startsWith(`A, friction ${first},`) && t[1]?.startsWith("B, friction 0.3,"), "panes with their parameters");
     // B has not begun: it is edited without a new scenario.
     await setFriction(0.25);
     await until(() => setup("B"), (s) => s.parameters[key] === 0.25, "an edit of B");
     assert.equal(await dialog.count(), 0);
     await run.shot(page, "38-two");
+  });
+
+  await run.check("two at different times: each view, the clock, the table, the picture and the page say their own", async () => {
+    await until(() => page.locator(".pane-name").allTextContents(), (t) => /, 4\.0.s$/.test(t[0] ?? "") && /, 0\.0.s$/.test(t[1] ?? ""), "a time in each view");
+    assert.match(await page.textContent(".clock"), /^0\.00 s B$/);
+    await row("A").click();
+    await until(() => page.textContent(".clock"), (t) => /^4\.\d\d s A$/.test(t), "the clock of A");
+    await row("B").click();
+    await page.click("[data-tab=compare]");
+    await until(() => page.locator(".comparison thead th").allTextContents(), (t) => /^A 4\.0.s$/.test(t[1] ?? "") && /^B 0\.0.s$/.test(t[2] ?? ""), "a time above each column");
+    // What is written into pictures cannot be read back from them.
+    await page.evaluate(() => {
+      window.written = [];
+      const { fillText } = CanvasRenderingContext2D.prototype;
+      CanvasRenderingContext2D.prototype.fillText = function (text, ...at) {
+        window.written.push(text);
+        return fillText.call(this, text, ...at);
+      };
+    });
+    const report = await saved(page, () => page.click("button:has-text('Save the comparison')"));
+    const times = (await page.evaluate(() => window.written)).filter((text) => /t = /.test(text));
+    assert.deepEqual(times, ["A left: t = 4.0 s   B right: t = 0.0 s"]);
+    assert.match(report.bytes.toString(), /<th>A <small>4\.0.s<\/small><\/th><th>B <small>0\.0.s<\/small><\/th>/);
+    const line = await page.locator(".timeline").boundingBox();
+    await row("A").click();
+    await page.mouse.click(line.x + 0.5 * line.width, line.y + 0.5 * line.height);
+    await until(() => page.locator(".pane-name").allTextContents(), (t) => /, (1\.9|2\.0|2\.1).s$/.test(t[0] ?? "") && /, 0\.0.s$/.test(t[1] ?? ""), "the recording has no more of B");
+    await page.click(".live");
+    await row("B").click();
   });
 
   await run.check("run, pause and restart in Compare act on both scenarios, and B − A is not blank", async () => {
@@ -62,6 +91,7 @@ export async function testScenarios(run) {
     await page.locator("label:has-text('B − A') input").check();
     const legend = page.locator(".legend").last();
     await until(() => legend.getAttribute("aria-label"), (t) => /B − A: colours from −[\d.]*[1-9]/.test(t ?? ""), "depths that differ");
+    await until(() => page.locator(".pane-map").allTextContents(), (t) => t.join("|") === "Map: B − A; debris of A|Map: B − A; debris of B", "the difference named in both views");
     await run.shot(page, "39-difference");
     await page.selectOption("select[aria-label^='Map layer']", "none");
   });
@@ -75,6 +105,11 @@ export async function testScenarios(run) {
     const read = (text) => Number(text.replace("−", "-").replace("+", ""));
     for (const [i, wanted] of [a, b, b - a].entries()) assert.ok(Math.abs(read(runOut[i]) - wanted) <= 0.006 * Math.max(a, b), `${runOut[i]} for ${wanted} m`);
     assert.deepEqual(told[0].slice(1).map(read), [first, 0.25, Number((0.25 - first).toPrecision(3))], told[0].join());
+    assert.ok(told.some(([name, one, other]) => /building friction/.test(name) && read(one) === first && read(other) === 0.25), "what follows friction");
+    for (const [name, ...values] of told) {
+      const [one, other, by] = values.map((text) => read(text.replace("\u202f", "")));
+      if (![one, other, by].some(Number.isNaN)) assert.ok(Math.abs(other - one - by) <= 0.51 * 10 ** -Math.min(...values.map((text) => text.split(".")[1]?.length ?? 0)), `${name}: ${values.join(" | ")}`);
+    }
     await run.shot(page, "41-numbers");
     const report = await saved(page, () => page.click("button:has-text('Save the comparison')"));
     assert.equal(report.name, "comparison.html");
@@ -90,6 +125,21 @@ export async function testScenarios(run) {
     await page.click("[data-tab=time]");
     const chart = page.locator(".tab-panel:visible .chart-plot").first();
     await until(() => chart.getAttribute("aria-label"), (t) => /Moving A from .*Moving B from/.test(t ?? ""), "both curves");
+    for (const tab of ["time", "front"]) {
+      await page.click(`[data-tab=${tab}]`);
+      const legends = await until(() => page.locator(".tab-panel:visible .chart-plot:visible").evaluateAll((plots) => plots.map((plot) => [...plot.querySelectorAll(".u-series")].slice(1).map((row) => {
+        const style = getComputedStyle(row.querySelector(".u-marker"));
+        return { label: row.querySelector(".u-label").textContent, colour: style.borderTopColor, line: style.borderTopStyle };
+      }))), (all) => all.length > 1 && all.every((rows) => rows.length > 1), `legends of ${tab}`);
+      for (const rows of legends) {
+        assert.equal(new Set(rows.map((row) => row.colour)).size, rows.length, `one colour twice: ${JSON.stringify(rows)}`);
+        for (const { label, line } of rows) {
+          const dashed = tab === "time" ? / B$/.test(label) : /^(Debris|Depth-averaged)/.test(label);
+          assert.equal(line, dashed ? "dashed" : "solid", label);
+        }
+      }
+      await run.shot(page, `45-curves-${tab}`);
+    }
   });
 
   await run.check("restart, run and pause in Compare act on both", async () => {
@@ -150,7 +200,7 @@ export async function testScenarios(run) {
     const words = `friction coefficient ${first} -> 0.27 at 4.0 s`;
     await until(() => page.textContent(".readings .on-the-way"), (t) => t.includes(words), "marked above charts and tables");
     assert.match(await page.textContent(".legends .on-the-way"), /Changed on the way/);
-    assert.match(await row("A").textContent(), /4\.0 s, changed/);
+    assert.match(await row("A").textContent(), /4\.0 s; [\d.]+.m³ still moving, changed/);
     await page.click("[data-tab=time]");
     const chart = page.locator(".tab-panel:visible .chart-plot").first();
     await until(() => chart.getAttribute("aria-label"), (t) => /Changed on the way at 4/.test(t ?? ""), "marked in the chart");
@@ -212,7 +262,8 @@ export async function testScenarios(run) {
     await page.click(".run");
     await ended("A");
     await until(() => page.locator(".run-message:visible").count(), (n) => n === 1, "why it has ended");
-    await until(() => page.textContent(".status"), (t) => t === "End reached", "the end");
+    await until(() => page.textContent(".status"), (t) => /^End reached; [\d.]+.m³ still moving$/.test(t), "the end, and what still moves");
+    await run.shot(page, "44-end");
     const line = await page.locator(".timeline").boundingBox();
     await page.mouse.click(line.x + 0.4 * line.width, line.y + 0.5 * line.height);
     await until(() => page.textContent(".status"), (t) => t === "Playback", "the recording");

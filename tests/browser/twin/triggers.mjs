@@ -47,8 +47,18 @@ export async function testTriggers(run) {
       body: JSON.stringify({ trigger: "Stream gauge", values: { discharge_m3ps: discharge }, reason: "weir 3" }) });
     assert.equal(response.status, 200, await response.text());
   };
-  const ada = await run.open(server.controller, { name: "Ada" });
-  const eve = await run.open(server.viewer, { name: "Eve" });
+  // Counts the tones that a page begins.
+  const prepare = (page) => page.addInitScript(() => {
+    window.tones = 0;
+    const { start } = OscillatorNode.prototype;
+    OscillatorNode.prototype.start = function (...at) {
+      ++window.tones;
+      return start.apply(this, at);
+    };
+  });
+  const ada = await run.open(server.controller, { name: "Ada", width: 1024, height: 768, prepare });
+  const eve = await run.open(server.viewer, { name: "Eve", width: 390, height: 844, touch: true, prepare });
+  await ada.mouse.click(512, 400);  // without a touch of the page browsers allow no sound
 
   await run.check("a gauge starts a run, and everybody sees it start and why", async () => {
     await inControl(ada);
@@ -66,6 +76,24 @@ export async function testTriggers(run) {
     await tell(25);
     for (const page of [ada, eve]) await until(() => page.textContent(".trigger-banner"), (t) => /Gauge now 25.0.m³\/s/.test(t), "the new value");
     await run.shot(eve, "60-trigger");
+  });
+
+  await run.check("an alarm stands above the view of everybody, on a phone and at 1024, until each has acknowledged it, with a sound where one is allowed", async () => {
+    for (const page of [ada, eve]) {
+      await until(() => page.locator(".alarm-banner").isVisible(), (v) => v, "the banner");
+      assert.match(await page.textContent(".alarm-banner"), /Alarm: Front on its way \(scenario B, [\d.]+ s, \d\d:\d\d:\d\d\)\..*before chainage 60 m.*Clear the road\./);
+      const [box, { width, height }] = [await boxOf(page.locator(".alarm-banner")), page.viewportSize()];
+      assert.ok(box.x >= 0 && box.y >= 0 && box.x + box.width <= width && box.y + box.height < 0.5 * height, JSON.stringify(box));
+    }
+    await run.shot(ada, "62-alarm-1024");
+    await run.shot(eve, "63-alarm-phone");
+    assert.equal(await ada.evaluate(() => window.tones), 3);
+    assert.equal(await eve.evaluate(() => window.tones), 0, "she has not touched the page");
+    await ada.click(".alarm-banner button");
+    await until(() => ada.locator(".alarm-banner").isVisible(), (v) => !v, "acknowledged");
+    assert.equal(await eve.locator(".alarm-banner").isVisible(), true, "by Ada alone");
+    await eve.tap(".alarm-banner button");
+    await until(() => eve.locator(".alarm-banner").isVisible(), (v) => !v, "acknowledged on the phone");
   });
 
   await run.check("an alarm is listed for everybody with what came of it, and is sent once", async () => {
@@ -94,6 +122,10 @@ export async function testTriggers(run) {
     await ada.locator(".trigger-banner [title=Close], .trigger-banner [aria-label=Close]").first().click();
     await until(() => ada.locator(".trigger-banner").isVisible(), (v) => !v, "the banner closed");
     assert.equal(await eve.locator(".trigger-banner").isVisible(), true, "for Ada alone");
+    await ada.reload();
+    await ada.waitForSelector(".transport");
+    await until(() => ada.locator(".alarms .alarm").count(), (n) => n === 1, "the alarm in the list");
+    assert.equal(await ada.locator(".alarm-banner").isVisible(), false, "still acknowledged");
   });
   await ada.context().close();
   await eve.context().close();

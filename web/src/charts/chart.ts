@@ -30,6 +30,13 @@ export interface ChartOptions {
 
 const font = "11px system-ui, 'Segoe UI', 'DejaVu Sans', sans-serif";
 
+/** Ends of the horizontal axis. Separate marks at the first or last value would be cut in half there. */
+export function xRange(low: number | null, high: number | null, marks: boolean): [number | null, number | null] {
+  if (low === null || high === null || !marks) return [low, high];
+  const margin = 0.03 * (high - low) || 1;
+  return [low - margin, high + margin];
+}
+
 export class Chart {
   readonly element: HTMLElement;
   private readonly holder = h("div", { class: "chart-plot", role: "img" });
@@ -103,18 +110,18 @@ export class Chart {
     });
     const series: Series[] = [{ label: x.label, value: (_, v) => (v === null ? "–" : `${number(v, 4)} ${unitText(x.unit)}`) },
       ...this.curves.map((c): Series => ({
-        label: c.label, stroke: inkOf(c.colour), width: c.marksOnly ? 0 : 1.6, scale: c.axis === "right" ? "right" : "y", spanGaps: true,
+        label: c.label, class: c.marksOnly ? "marks" : "line", stroke: inkOf(c.colour), width: c.marksOnly ? 0 : 1.6, scale: c.axis === "right" ? "right" : "y", spanGaps: true,
         ...(c.dashed ? { dash: [5, 4] } : {}), ...(c.fill ? { fill: c.fill === "ground" ? ink.ground : c.fill } : {}),
         points: c.marksOnly ? { show: true, size: 9, fill: ink.paper, stroke: inkOf(c.colour), width: 2 } : { show: c.points ?? false, size: 4, fill: inkOf(c.colour) },
         value: (_, v) => (v === null ? "–" : `${number(v, 3)} ${unitText(c.unit)}`),
       }))];
     const options: Options = {
       width, height: height ?? 190, padding: [8, right ? 0 : 10, 0, 0], series,
-      scales: { x: { time: false }, y: { range: (_, low, high) => [Math.min(0, low ?? 0), (high ?? 1) > 0 ? (high ?? 1) * 1.06 : 1] },
+      scales: { x: { time: false, range: (_: uPlot, low: number | null, high: number | null) => xRange(low, high, this.curves.some((c) => c.marksOnly)) }, y: { range: (_, low, high) => [Math.min(0, low ?? 0), (high ?? 1) > 0 ? (high ?? 1) * 1.06 : 1] },
         ...(right ? { right: { range: (_u: uPlot, low: number, high: number) => [Math.min(0, low), high > 0 ? high * 1.06 : 1] } } : {}) } as Options["scales"] & object,
       axes: [axis(x.label, x.unit, 2), axis(y.label, y.unit, 3), ...(right ? [{ ...axis(right.label, right.unit, 1), scale: "right" }] : [])],
       cursor: { points: { size: 6 }, drag: { x: true, y: false } },
-      legend: { show: this.options.legend ?? true, live: true },
+      legend: { show: this.options.legend ?? true, live: true, markers: { dash: (_, i) => (this.curves[i - 1]?.dashed ? "dashed" : "solid") } },
       hooks: { draw: [(plot) => this.drawMarks(plot)] },
     };
     this.plot = new uPlot(options, this.data, this.holder);

@@ -5,6 +5,7 @@ import { watchAll } from "../state/cell";
 import { fixed, quantity } from "../state/format";
 import type { Probe, Twin } from "../state/twin";
 import { button, h } from "../ui/dom";
+import { besideColour } from "../ui/theme";
 import { Chart, joined, type Curve } from "./chart";
 
 type Quantity = "depth_m" | "speed_mps" | "pressure_kPa";
@@ -73,7 +74,8 @@ export class Probes {
           const series = probe.series[name];
           if (!series) continue;
           tables.push({ x: series.time_s, y: series[kind] });
-          curves.push({ label: `${i + 1}${twin.shown.value.length > 1 ? ` ${name}` : ""}`, unit, colour: probe.colour, dashed: name === twin.shown.value[1] });
+          const second = name === twin.shown.value[1];
+          curves.push({ label: `${i + 1}${twin.shown.value.length > 1 ? ` ${name}` : ""}`, unit, colour: second ? besideColour(probe.colour) : probe.colour, dashed: second });
         }
       });
       this.charts[c]?.update(tables.length > 0 ? joined(tables) : [[]], curves);

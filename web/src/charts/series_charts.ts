@@ -4,12 +4,14 @@ import { watchAll } from "../state/cell";
 import { seriesUntil } from "../state/past";
 import { probeColours, type Twin } from "../state/twin";
 import { h } from "../ui/dom";
+import { besideColour } from "../ui/theme";
 import { Chart, joined, type Curve } from "./chart";
 
 /** Of the two that are shown. */
 const colours = ["#0b5fa5", "#d1640f"];
+const debrisColours = ["#2a9fc9", "#b08900"];
 const depthAveragedColours = ["#7b3fa0", "#2f7d4f"];
-const observationColour = "#a3262a";
+const observed = [["front_velocity", "Field, front velocity", "#a3262a"], ["debris_speed", "Field, debris speed", "#1c2126"]] as const;
 
 /** Every n-th value of a long column, few enough to plot. */
 function thinned(column: Column, most = 600): number[] {
@@ -26,7 +28,7 @@ export function frontCharts(twin: Twin, below: HTMLElement): HTMLElement {
     height: 230, empty: "The front has not moved yet. Run the simulation: velocities appear as it passes each chainage." });
   const arrival = new Chart({ title: "Arrival of the front", x: { label: "Chainage", unit: "m" }, y: { label: "Time", unit: "s" }, curves: [], height: 170,
     empty: "No arrivals yet." });
-  const observed = twin.scene.observations;
+  const { observations } = twin.scene;
   watchAll([twin.shown, ...twin.every("series"), ...twin.every("depthAveraged"), twin.replay_s], () => {
     const tables: { x: Column; y: Column }[] = [];
     const curves: Curve[] = [];
@@ -47,21 +49,23 @@ export function frontCharts(twin: Twin, below: HTMLElement): HTMLElement {
       if (!front || front.chainage_m.length === 0) continue;
       tables.push({ x: front.chainage_m, y: front.front_velocity_mps }, { x: front.chainage_m, y: front.particle_speed_mps });
       curves.push({ label: `Front${suffix}`, unit: "m/s", colour: colours[i], points: front.chainage_m.length < 40 },
-        { label: `Debris at front${suffix}`, unit: "m/s", colour: colours[i], dashed: true });
+        { label: `Debris at front${suffix}`, unit: "m/s", colour: debrisColours[i], dashed: true });
       times.push({ x: front.chainage_m, y: front.arrival_time_s });
       timeCurves.push({ label: `Arrival${suffix}`, unit: "s", colour: colours[i] });
     }
-    if (observed.length > 0) {
-      tables.push({ x: observed.map((o) => o.chainage_m), y: observed.map((o) => o.observed_mps) });
-      curves.push({ label: "Observed", unit: "m/s", colour: observationColour, marksOnly: true });
+    for (const [quantity, label, colour] of observed) {
+      const own = observations.filter((o) => o.quantity === quantity);
+      if (own.length === 0) continue;
+      tables.push({ x: own.map((o) => o.chainage_m), y: own.map((o) => o.observed_mps) });
+      curves.push({ label, unit: "m/s", colour, marksOnly: true });
     }
     velocity.update(tables.length > 0 ? joined(tables) : [[]], curves);
     arrival.update(times.length > 0 ? joined(times) : [[]], timeCurves);
   });
-  const list = h("ul", { class: "observations" }, ...observed.map((o) =>
+  const list = h("ul", { class: "observations" }, ...observations.map((o) =>
     h("li", {}, `${o.name}: ${o.quantity === "debris_speed" ? "debris" : "front"} ${o.observed_mps} m/s at ${o.chainage_m} m (${o.source})`)));
   const note = twin.scene.flow_path ? null : h("p", { class: "hint" }, "This scene has no flow path: there is no chainage to plot against.");
-  return h("div", {}, note, velocity.element, observed.length > 0 ? h("div", { class: "hint" }, "Observations", list) : null, arrival.element, below);
+  return h("div", {}, note, velocity.element, observations.length > 0 ? h("div", { class: "hint" }, "Observations", list) : null, arrival.element, below);
 }
 
 interface Plotted { column: string; label: string; colour: string }
@@ -91,7 +95,7 @@ export function timeCharts(twin: Twin): HTMLElement {
         for (const { column, label, colour } of list) {
           if (!table?.[column] || picked.length === 0) continue;
           tables.push({ x: pick(table["time_s"], 1), y: pick(table[column], factor) });
-          curves.push({ label: two ? `${label} ${name}` : label, colour, unit, dashed: i === 1 });
+          curves.push({ label: two ? `${label} ${name}` : label, colour: i === 1 ? besideColour(colour) : colour, unit, dashed: i === 1 });
         }
       }
       chart.update(tables.length > 0 ? joined(tables) : [[]], curves);
@@ -100,7 +104,7 @@ export function timeCharts(twin: Twin): HTMLElement {
     const depths = twin.shown.value.flatMap((name, i) => {
       const series = seriesUntil(twin.cells[name].series.value, twin.replay_s.value);
       return probeColours.slice(0, series?.gauges.depth_m.length ?? 0).map((colour, k) => ({ table: { x: series?.gauges.time_s ?? [], y: series?.gauges.depth_m[k] ?? [] },
-        curve: { label: `${twin.scene.gauges[k].name}${two ? ` ${name}` : ""}`, colour, unit: "m", dashed: i === 1 } }));
+        curve: { label: `${twin.scene.gauges[k].name}${two ? ` ${name}` : ""}`, colour: i === 1 ? besideColour(colour) : colour, unit: "m", dashed: i === 1 } }));
     });
     gauges.update(depths.length > 0 ? joined(depths.map((d) => d.table)) : [[]], depths.map((d) => d.curve));
     put(volume, volumes, "m3");

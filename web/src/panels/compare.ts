@@ -5,13 +5,13 @@ import { watchAll } from "../state/cell";
 import { comparisonRows, differenceText, untouched, type PointPeaks, type Row, type Side } from "../state/comparison";
 import { changesText, paneText } from "../state/differences";
 import { fixed, tick, unitText } from "../state/format";
+import { standingText } from "../state/standing";
 import { pressures } from "../state/pressures";
 import type { Probe, Twin } from "../state/twin";
 import { button, h } from "../ui/dom";
 import { comparisonReport } from "./comparison_report";
 import { save } from "../ui/save";
 import type { Picture } from "./picture";
-import { statusWords } from "./transport";
 
 const peak = (column: readonly (number | null)[]): number | null => column.reduce<number | null>((most, v) => (v === null ? most : Math.max(most ?? v, v)), null);
 const peaksOf = (probe: Probe, i: number, name: ScenarioName): PointPeaks => {
@@ -24,8 +24,11 @@ export const shownValue = (value: number | string | null): string => (typeof val
 export function standing(twin: Twin, name: ScenarioName): string {
   const { state, setup } = twin.cells[name];
   const changes = changesText(setup.value);
-  return `${state.value ? `${statusWords[state.value.status]}, ${fixed(state.value.time_s, 1)} s` : ""}${changes ? `; changed on the way: ${changes}` : ""}`;
+  return `${state.value ? standingText(state.value) : ""}${changes ? `; changed on the way: ${changes}` : ""}`;
 }
+
+/** How far a run has come, which its figures are of. */
+export const timeSoFar = (twin: Twin, name: ScenarioName): string => `${fixed(twin.cells[name].state.value?.time_s, 1)}\u202fs`;
 
 export class ComparePanel {
   readonly element: HTMLElement;
@@ -48,7 +51,7 @@ export class ComparePanel {
     const shown = h("div", {}, h("div", { class: "row" }, report), this.notEqual, table, this.rest,
       h("p", { class: "hint" }, `${pressures} Figures are those of the runs as far as they have come.`));
     this.element = h("div", {}, none, shown);
-    watchAll([twin.shown, ...twin.every("impacts"), ...twin.every("gauges"), ...twin.every("setup"), ...twin.every("state"), twin.probes], () => {
+    watchAll([twin.shown, ...twin.every("impacts"), ...twin.every("gauges"), ...twin.every("setup"), ...twin.every("state"), twin.probes, twin.replay_s], () => {
       shown.hidden = twin.shown.value.length < 2;
       none.hidden = !shown.hidden;
       this.draw();
@@ -81,14 +84,14 @@ export class ComparePanel {
     const [a, b] = twin.shown.value;
     if (b === undefined) return;
     const [left, right] = [this.side(a), this.side(b)];
-    this.rows = comparisonRows(left, right, twin.scene.parameters);
+    this.rows = comparisonRows(left, right, twin.scene.parameters, twin.replay_s.value);
     const count = untouched(left, right);
     this.rest.textContent = count > 0 ? `${count} ${count === 1 ? "house" : "houses"} not hit in either run` : "";
     const [then, now] = [a, b].map((name) => twin.cells[name].state.value?.time_s ?? 0);
     const over = [a, b].every((name) => ["ended", "at_rest"].includes(twin.cells[name].state.value?.status ?? ""));
     this.notEqual.hidden = over;
     this.notEqual.textContent = over ? "" : `These runs are still in progress: ${a} is at ${fixed(then, 1)} s, ${b} at ${fixed(now, 1)} s.`;
-    this.head.replaceChildren(h("tr", {}, h("th", {}), ...[a, b].map((name) => h("th", { scope: "col", title: `${paneText(twin, name)}: ${standing(twin, name)}` }, name)),
+    this.head.replaceChildren(h("tr", {}, h("th", {}), ...[a, b].map((name) => h("th", { scope: "col", title: `${paneText(twin, name)}: ${standing(twin, name)}` }, name, h("small", {}, ` ${timeSoFar(twin, name)}`))),
       h("th", { scope: "col" }, `${b} − ${a}`)));
     const lines: HTMLElement[] = [];
     let group = "";

@@ -6,7 +6,7 @@ import { tick, unitText } from "../state/format";
 import { pressures } from "../state/pressures";
 import { roundStep } from "../scene/colour";
 import type { Twin } from "../state/twin";
-import { shownValue, standing } from "./compare";
+import { shownValue, standing, timeSoFar } from "./compare";
 
 const escape = (text: string): string => text.replace(/[&<>"]/g, (c) => `&#${c.charCodeAt(0)};`);
 const colours = ["#0b5fa5", "#d1640f"];
@@ -50,7 +50,7 @@ h1 { font-size: 14pt; margin: 0 0 4px } p { margin: 2px 0 } img { display: block
 table { border-collapse: collapse; width: 100%; font-size: 8pt; font-variant-numeric: tabular-nums } th { text-align: left; font-weight: 400 } td { text-align: right }
 tr { border-bottom: 1px solid #e4e8eb } thead th, .g th { font-weight: 600 } thead th + th { text-align: right } figure { margin: 0 0 4mm } figcaption { font-weight: 600 } svg { width: 100%; font-size: 8px } small { color: #5a646e }
 </style><h1>${escape(scene.title)}: comparison of ${shown.join(" and ")}</h1>${heads.join("")}
-<img alt="Both views" src="${picture}"><div class="two"><div><table><thead><tr><th></th><th>${shown[0]}</th><th>${shown[1]}</th><th>${escape(twin.differenceName)}</th></tr></thead><tbody>${body.join("")}</tbody></table><p><small>${escape(rest)}</small></p></div>
+<img alt="Both views" src="${picture}"><div class="two"><div><table><thead><tr><th></th>${shown.map((name) => `<th>${name} <small>${timeSoFar(twin, name)}</small></th>`).join("")}<th>${escape(twin.differenceName)}</th></tr></thead><tbody>${body.join("")}</tbody></table><p><small>${escape(rest)}</small></p></div>
 <div>${front}${moving}<p><small>${shown[0]} solid, ${shown[1]} dashed. ${escape(pressures)} Compared on ${new Date().toISOString().slice(0, 16).replace("T", " ")} UTC.</small></p></div></div></html>
 `;
 }

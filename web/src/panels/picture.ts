@@ -49,16 +49,20 @@ export class Picture {
       c.fillStyle = "#1c2126";
     };
     const title = twin.scene.title;
-    const time = `t = ${fixed(stage.stats.shownTime_s, 1)} s`;
-    c.font = `600 14px ${font}`;
+    const [first, second] = stage.stacked ? ["above", "below"] : ["left", "right"];
+    const two = stage.views.size > 1;
+    const times = two ? twin.shown.value.map((name, i) => `${name} ${i === 0 ? first : second}: t = ${fixed(stage.timeOf(name), 1)} s`) : [`t = ${fixed(stage.stats.shownTime_s, 1)} s`];
+    const time = [...times, ...(this.layers.isDifference ? [`map in both: ${twin.differenceName}`] : [])].join("   ");
     const changed = twin.shown.value.filter((name) => changesText(twin.cells[name].setup.value))
       .map((name) => `${twin.shown.value.length > 1 ? `${name} c` : "C"}hanged on the way: ${changesText(twin.cells[name].setup.value)}`);
-    plate(10, 10, Math.max(c.measureText(title).width, 90) + 20, 44 + 15 * changed.length);
+    const lines = [time, ...changed];
+    c.font = `12px ${font}`;
+    const widest = Math.max(...lines.map((line) => c.measureText(line).width));
+    c.font = `600 14px ${font}`;
+    plate(10, 10, Math.min(width - 40, Math.max(c.measureText(title).width, widest, 90) + 20), 29 + 15 * lines.length);
     c.fillText(title, 20, 25);
     c.font = `12px ${font}`;
-    changed.forEach((line, i) => c.fillText(line, 20, 58 + 15 * i, width - 60));
-    const [first, second] = stage.stacked ? ["above", "below"] : ["left", "right"];
-    c.fillText(time + (stage.views.size > 1 ? `   ${twin.shown.value[0]} ${first}, ${twin.shown.value[1]} ${second}` : ""), 20, 43);
+    lines.forEach((line, i) => c.fillText(line, 20, 43 + 15 * i, width - 60));
     strip.draw(c, height);
     const perPixel = stage.metresPerPixel;
     const length = roundStep(perPixel * 60);
@@ -98,7 +102,9 @@ export class Picture {
     const canvas = this.compose(this.stage.drawNow());
     const content = await new Promise<Blob | null>((resolve) => canvas.toBlob(resolve, "image/png"));
     if (!content) throw new Error("The browser could not make the picture.");
-    return { name: `${this.fileName}-${fixed(this.stage.stats.shownTime_s, 1)}s.png`, content };
+    const { twin, stage } = this;
+    const times = twin.shown.value.map((name) => `-${twin.shown.value.length > 1 ? name : ""}${fixed(stage.timeOf(name), 1)}s`);
+    return { name: `${this.fileName}${times.join("")}.png`, content };
   }
   png(): void {
     void this.twin.attempt(async () => {

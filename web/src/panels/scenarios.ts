@@ -3,10 +3,10 @@ import { scenarioNames, type ScenarioName } from "../protocol/frame";
 import { watchAll } from "../state/cell";
 import { changesText, differences } from "../state/differences";
 import { fixed } from "../state/format";
+import { standingText } from "../state/standing";
 import type { Habit, Twin } from "../state/twin";
 import { askFor } from "../ui/dialog";
 import { button, h } from "../ui/dom";
-import { statusWords } from "./transport";
 
 const habits: readonly (readonly [Habit, string])[] = [["new", "New scenario from the start"], ["now", "Change from now on"]];
 
@@ -87,7 +87,7 @@ function scenarioRow(twin: Twin, name: ScenarioName): HTMLElement {
     apart.hidden = apart.textContent === "";
     choose.title = [apart.textContent, changes].filter(Boolean).join("\n");
     // No further line: what is below must not move while it is clicked.
-    status.textContent = state.value ? `${statusWords[state.value.status]}, ${fixed(state.value.time_s, 1)} s${changes ? ", changed" : ""}` : "";
+    status.textContent = state.value ? `${standingText(state.value)}${changes ? ", changed" : ""}` : "";
     choose.setAttribute("aria-pressed", String(twin.edited.value === name));
     row.classList.toggle("shown", twin.shown.value.includes(name));
     rename.disabled = end.disabled = twin.hindrance !== null;

@@ -3,6 +3,7 @@ import { scenarioNames } from "../protocol/frame";
 import { watchAll } from "../state/cell";
 import { fixed } from "../state/format";
 import type { Playback } from "../state/playback";
+import { standingText } from "../state/standing";
 import { aboutTime, timeLeft } from "../state/time_left";
 import type { Twin } from "../state/twin";
 import { button, h, icon, type IconName } from "../ui/dom";
@@ -11,8 +12,6 @@ const speeds: [string, string][] = [
   ["0.1", "0.1 × real time"], ["0.25", "0.25 ×"], ["0.5", "0.5 ×"], ["1", "1 × real time"], ["2", "2 ×"], ["4", "4 ×"], ["10", "10 ×"],
   ["", "Fastest"],
 ];
-
-export const statusWords = { running: "Running", paused: "Paused", at_rest: "At rest", ended: "End reached", fault: "Stopped by a fault" } as const;
 
 export function transport(twin: Twin, playback: Playback): HTMLElement {
   const run = button("Run", { class: "primary run", icon: "run", onclick: () => void toggle(twin) });
@@ -36,12 +35,14 @@ export function transport(twin: Twin, playback: Playback): HTMLElement {
     const state = twin.now.state.value;
     if (!state) return;
     const at = twin.replay_s.value ?? state.time_s;
-    clock.value = `${fixed(at, 2)} s`;
+    // Two that are shown may be at different times: this is that of one.
+    const whose = twin.shown.value.length > 1 ? ` ${twin.edited.value}` : "";
+    clock.replaceChildren(`${fixed(at, 2)} s`, whose ? h("small", {}, whose) : "");
     slider.max = String(state.end_time_s);
     if (document.activeElement !== slider || twin.replay_s.value === null) slider.value = String(at);
     slider.style.setProperty("--recorded", `${(100 * state.recording.last_s) / state.end_time_s}%`);
     slider.style.setProperty("--shown", `${(100 * at) / state.end_time_s}%`);
-    slider.setAttribute("aria-valuetext", `${fixed(at, 2)} s of ${fixed(state.end_time_s, 0)} s${twin.replay_s.value === null ? ", live" : ", from the recording"}`);
+    slider.setAttribute("aria-valuetext", `${fixed(at, 2)} s of ${fixed(state.end_time_s, 0)} s${whose && `, scenario${whose}`}${twin.replay_s.value === null ? ", live" : ", from the recording"}`);
     const going = state.status === "running" && twin.replay_s.value === null;
     const left = going ? aboutTime(timeLeft(state)) : "";
     ends.lastElementChild?.replaceChildren(`${left ? `${left} left · ` : ""}${fixed(state.end_time_s, 0)} s`);
@@ -65,7 +66,7 @@ export function transport(twin: Twin, playback: Playback): HTMLElement {
       if (![...speed.options].some((o) => o.value === value)) speed.prepend(h("option", { value }, `${value} ×`));
       speed.value = value;
     }
-    status.textContent = state ? (twin.replay_s.value === null ? statusWords[state.status] : "Playback") : "";
+    status.textContent = state ? (twin.replay_s.value === null ? standingText(state, false) : "Playback") : "";
     status.dataset["status"] = twin.replay_s.value === null ? (state?.status ?? "") : "replay";
     status.title = twin.replay_s.value === null ? (state?.message ?? "") : "";
     live.classList.toggle("on", twin.replay_s.value === null);

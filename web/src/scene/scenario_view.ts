@@ -215,7 +215,7 @@ export class ScenarioView {
       for (const observation of scene.observations) {
         const place = placeOnPath(scene, observation.chainage_m);
         if (place) {
-          labels.push({ at: relief.local(place.at[0], place.at[1], 4), text: `observed ${quantity(observation.observed_mps, "m/s")}`,
+          labels.push({ at: relief.local(place.at[0], place.at[1], 4), text: `${observation.name}, ${observation.quantity === "debris_speed" ? "debris" : "front"} ${quantity(observation.observed_mps, "m/s")}`,
             kind: "observation", priority: 6 });
         }
       }

@@ -132,6 +132,10 @@ export class Stage {
   onCamera(reader: () => void): void {
     this.cameraReaders.push(reader);
   }
+  /** Of the picture of a scenario: two that are shown may be at different times. */
+  timeOf(name: ScenarioName): number | null {
+    return this.views.get(name)?.clock.time_s(performance.now()) ?? null;
+  }
   pane(name: ScenarioName): HTMLElement | undefined {
     return this.panes.get(name);
   }

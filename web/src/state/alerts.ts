@@ -1,5 +1,5 @@
 // Triggers and alarms in words.
-import type { Alerts, TriggeredRun } from "../protocol/messages";
+import type { Alerts, RaisedAlarm, TriggeredRun } from "../protocol/messages";
 import { fixed, quantity } from "./format";
 
 /** What tells two runs of triggers apart. */
@@ -23,4 +23,32 @@ export function startedText(run: TriggeredRun, zone?: string): string {
 
 export function readingText(run: TriggeredRun, zone?: string): string {
   return run.reading ? `Gauge now ${quantity(run.reading.discharge_m3ps, "m3/s")} (${clockText(run.reading.received_at, zone)})` : "";
+}
+
+/** What tells two alarms apart, also of runs that were started again in one place. */
+export const alarmKey = (alarm: RaisedAlarm): string => [alarm.scenario, alarm.alarm, alarm.raised_at, alarm.hash].join(" ");
+
+/** Alarms from their raising until this person has acknowledged them, also of a run that was started again or has ended meanwhile. */
+export class AlarmBook {
+  private readonly open = new Map<string, RaisedAlarm>();
+
+  constructor(private readonly acknowledged: Set<string>, private readonly keep: (acknowledged: readonly string[]) => void = () => {}) {}
+
+  /** Returns those that are new. Alarms of a saved session have no time of day: nobody is alarmed again. */
+  hear(alarms: readonly RaisedAlarm[]): RaisedAlarm[] {
+    const fresh = alarms.filter((alarm) => alarm.raised_at !== null && !this.open.has(alarmKey(alarm)) && !this.acknowledged.has(alarmKey(alarm)));
+    for (const alarm of fresh) this.open.set(alarmKey(alarm), alarm);
+    return fresh;
+  }
+  acknowledge(alarms: readonly RaisedAlarm[]): void {
+    for (const alarm of alarms) {
+      this.open.delete(alarmKey(alarm));
+      this.acknowledged.add(alarmKey(alarm));
+    }
+    this.keep([...this.acknowledged]);
+  }
+  /** The newest first. */
+  get pending(): readonly RaisedAlarm[] {
+    return [...this.open.values()].reverse();
+  }
 }

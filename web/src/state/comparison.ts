@@ -1,22 +1,20 @@
 // What two scenarios have come to, side by side: figures, houses, barriers, gauges, points.
 import type { Figure, GaugeReading, Impact, BarrierImpact, Impacts, Parameter, Setup } from "../protocol/messages";
-import { differingKeys } from "./differences";
-import { fixed, number } from "./format";
+import { changedKeys } from "./differences";
+import { decimals, fixed } from "./format";
 
 export interface Row { group: string; name: string; unit: string; a: number | string | null; b: number | string | null }
 export interface Side { setup: Setup | null; figures: readonly Figure[]; impacts: Impacts | null; gauges: readonly GaugeReading[]; points: readonly PointPeaks[] }
 /** Peaks at a probe. */
 export interface PointPeaks { name: string; depth_m: number | null; speed_mps: number | null; pressure_kPa: number | null }
 
-/** b − a; null where one of them is no number. */
-export const differenceOf = (row: Row): number | null => (typeof row.a === "number" && typeof row.b === "number" ? row.b - row.a : null);
-
-const decimals = (value: number): number => number(value).split(".")[1]?.length ?? 0;
-/** The difference with no more decimals than the value beside it that has the fewest; a zero has none to count. */
-export function differenceText(row: Row): string {
-  const by = differenceOf(row);
-  if (by === null) return "–";
-  const counted = [row.a, row.b].filter((v): v is number => typeof v === "number" && v !== 0).map(decimals);
+/** As the table shows it. */
+const rounded = (value: number): number => Number(value.toFixed(decimals(value)));
+/** b − a of the values as they are shown, so that the row adds up, with no more decimals than the one that has the fewest; a zero has none to count. */
+export function differenceText({ a, b }: Row): string {
+  if (typeof a !== "number" || typeof b !== "number") return "–";
+  const counted = [a, b].filter((v) => v !== 0).map((v) => decimals(v));
+  const by = rounded(b) - rounded(a);
   const text = fixed(by, counted.length > 0 ? Math.min(...counted) : 0).replace(/(\.\d*?)0+$/, "$1").replace(/\.$/, "");
   return /[1-9]/.test(text) ? `${by > 0 ? "+" : ""}${text}` : "0";
 }
@@ -39,8 +37,10 @@ function paired<T extends { name: string }>(group: string, key: (of: T) => strin
   });
 }
 
-export function comparisonRows(a: Side, b: Side, parameters: readonly Parameter[]): Row[] {
-  const keys = a.setup && b.setup ? differingKeys([a.setup, b.setup]) : [];
+/** until_s: time of the recording that houses, barriers and gauges are of; null: they are of the runs so far, as figures and points always are. */
+export function comparisonRows(a: Side, b: Side, parameters: readonly Parameter[], until_s: number | null = null): Row[] {
+  const until = until_s === null ? "" : `, until ${fixed(until_s, 1)} s`;
+  const keys = a.setup && b.setup ? changedKeys([a.setup, b.setup]) : [];
   const given = parameters.filter((p) => keys.includes(p.key))
     .map((p): Row => ({ group: "Parameters", name: p.label, unit: p.unit, a: a.setup?.parameters[p.key] ?? null, b: b.setup?.parameters[p.key] ?? null }));
   const figures = a.figures.flatMap((one): Row[] => {
@@ -54,9 +54,9 @@ export function comparisonRows(a: Side, b: Side, parameters: readonly Parameter[
   const houses = (side: Side): Impact[] => hit(side).filter((i) => reached.has(i.id));
   const wet = new Set([...a.gauges, ...b.gauges].filter((g) => g.peak_depth_m > 0).map((g) => g.name));
   const gauges = (side: Side): GaugeReading[] => side.gauges.filter((g) => wet.has(g.name));
-  return [...given, ...figures, ...paired("Houses", (i: Impact) => i.id, houses(a), houses(b), atHouses),
-    ...paired("Barriers", (i: BarrierImpact) => i.id, a.impacts?.barriers ?? [], b.impacts?.barriers ?? [], atBarriers),
-    ...paired("Gauges", (g: GaugeReading) => g.name, gauges(a), gauges(b), atGauges),
+  return [...given, ...figures, ...paired(`Houses${until}`, (i: Impact) => i.id, houses(a), houses(b), atHouses),
+    ...paired(`Barriers${until}`, (i: BarrierImpact) => i.id, a.impacts?.barriers ?? [], b.impacts?.barriers ?? [], atBarriers),
+    ...paired(`Gauges${until}`, (g: GaugeReading) => g.name, gauges(a), gauges(b), atGauges),
     ...paired("Points", (p: PointPeaks) => p.name, a.points, b.points, atPoints)];
 }
 

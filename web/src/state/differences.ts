@@ -1,7 +1,8 @@
 // What sets two scenarios apart, in a few words.
 import type { ScenarioName } from "../protocol/frame";
 import type { Parameter, Setup } from "../protocol/messages";
-import { fixed, tick, unitText } from "./format";
+import { fields, type FieldDescription } from "../protocol/schema";
+import { fixed, quantity, shownAs, tick, unitText } from "./format";
 import type { Twin } from "./twin";
 
 const shortLabel = (label: string): string => label.replace(/ coefficient$/, "");
@@ -11,10 +12,9 @@ const friction = "material.friction_coefficient";
 const follows = (key: string, setup: Setup): boolean => /friction/.test(key) && key !== friction && setup.parameters[key] === setup.parameters[friction];
 
 /** Keys of the parameters whose values are not the same everywhere. */
-export function differingKeys(setups: readonly Setup[]): string[] {
+export function changedKeys(setups: readonly Setup[]): string[] {
   const [first, ...others] = setups;
-  return Object.keys(first?.parameters ?? {}).filter((key) =>
-    others.some((s) => s.parameters[key] !== first.parameters[key]) && !setups.every((s) => follows(key, s)));
+  return Object.keys(first?.parameters ?? {}).filter((key) => others.some((s) => s.parameters[key] !== first.parameters[key]));
 }
 function valueText(parameter: Parameter, setup: Setup): string {
   const value = setup.parameters[parameter.key] ?? null;
@@ -26,19 +26,34 @@ interface Named { id: string; name: string }
 const passing = new Set(["name", "status", "start_time_s", "in_force"]);
 const essence = (item: Named): string => JSON.stringify(item, (key, value: unknown) => (passing.has(key) ? undefined : value));
 
-function objectDifferences(first: readonly Named[], other: readonly Named[]): string[] {
+/** Where its values are described: see the schema. */
+const sections = { releases: "release", barriers: "barrier", buildings: "buildings", zones: "zone", beds: "bed", inflows: "inflow" } as const;
+type Kind = keyof typeof sections;
+
+/** Its own values that the other one of that id has otherwise. No word of who was changed: of two scenarios either may be the one that was. */
+function apart(kind: Kind, first: Named, other: Named): string {
+  const [one, own] = [first, other].map((item) => item as unknown as Record<string, unknown>);
+  const values = Object.entries<FieldDescription>(fields[sections[kind]]).flatMap(([key, about]) => {
+    const value = own[key];
+    return value === one[key] || typeof value !== "number" ? [] : [`${about.label.toLowerCase()} ${quantity(shownAs(about, value), about.unit)}`];
+  });
+  return values.length > 0 ? `${other.name} ${values.join(", ")}` : `${other.name} differs`;
+}
+
+function objectDifferences(kind: Kind, first: readonly Named[], other: readonly Named[]): string[] {
   const added = other.filter((o) => !first.some((f) => f.id === o.id)).map((o) => o.name);
   const gone = first.filter((f) => !other.some((o) => o.id === f.id)).map((f) => `no ${f.name}`);
-  const changed = other.filter((o) => first.some((f) => f.id === o.id && essence(f) !== essence(o))).map((o) => `${o.name} changed`);
-  return [...added, ...gone, ...changed];
+  const both = other.flatMap((o) => first.filter((f) => f.id === o.id && essence(f) !== essence(o)).map((f) => apart(kind, f, o)));
+  return [...added, ...gone, ...both];
 }
 
 /** Of `other` from `first`: "friction 0.27", "barrier 1", "no House 3". */
 export function differences(first: Setup, other: Setup, parameters: readonly Parameter[]): string[] {
   if (first.scenario === other.scenario) return [];
-  const keys = differingKeys([first, other]);
+  // In a title the friction that others follow stands for them; the table lists all.
+  const keys = changedKeys([first, other]).filter((key) => ![first, other].every((s) => follows(key, s)));
   return [...parameters.filter((p) => keys.includes(p.key)).map((p) => valueText(p, other)),
-    ...(["releases", "barriers", "buildings", "zones", "beds", "inflows"] as const).flatMap((kind) => objectDifferences(first[kind], other[kind]))];
+    ...(Object.keys(sections) as Kind[]).flatMap((kind) => objectDifferences(kind, first[kind], other[kind]))];
 }
 
 const mostTold = 2;

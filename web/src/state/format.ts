@@ -7,12 +7,13 @@ export function unitText(unit: string): string {
   return unit.replace(/([a-zA-Z])2\b/g, "$1²").replace(/([a-zA-Z])3\b/g, "$1³");
 }
 
+/** How many decimals so many significant digits come to. */
+export const decimals = (value: number, digits = 3): number => (value === 0 ? 0 : Math.max(0, Math.min(6, digits - 1 - Math.floor(Math.log10(Math.abs(value))))));
+
 /** `digits`: significant digits; thousands are set apart by a thin space. */
 export function number(value: number | null | undefined, digits = 3): string {
   if (value === null || value === undefined || !Number.isFinite(value)) return nothing;
-  const size = Math.abs(value);
-  const after = size === 0 ? 0 : Math.max(0, Math.min(6, digits - 1 - Math.floor(Math.log10(size))));
-  const fixed = value.toFixed(after);
+  const fixed = value.toFixed(decimals(value, digits));
   const [whole = "", part] = fixed.split(".");
   const grouped = whole.replace(/\B(?=(\d{3})+(?!\d))/g, "\u202f").replace("-", "\u2212");
   return part === undefined ? grouped : `${grouped}.${part}`;

@@ -15,6 +15,8 @@ export const inkOf = (colour: string): string => (dark().matches && /^#[0-9a-f]{
 
 const share = 0.42;
 export const lightened = (colour: string): string => hex(fromHex(colour).map((v) => Math.round(v + (255 - v) * share)) as Rgb);
+/** Of the same quantity in the second of two scenarios: no two curves of a chart have one colour. */
+export const besideColour = (colour: string): string => hex(fromHex(colour).map((v) => Math.round(v * 0.5)) as Rgb);
 
 export const chartInk = (): { text: string; grid: string; ticks: string; ground: string; paper: string } =>
   dark().matches ? { text: "#a3afb9", grid: "#2a3239", ticks: "#4c5760", ground: "#3a3529", paper: "#171c21" }
