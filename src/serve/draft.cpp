@@ -194,7 +194,11 @@ Status Draft::take(std::string_view role, const std::string& name, const fs::pat
         fs::remove_all(fresh, ignored);
         fs::remove_all(folder_ / "foreign", ignored);
         fs::remove(upload, ignored);
-        return Error{plain(error.message)};
+        // By the name that its user gave it.
+        std::string message = plain(error.message);
+        const std::string kept = upload_name_of(name);
+        if (message.starts_with(kept + ":")) message.replace(0, kept.size(), name);
+        return Error{std::move(message)};
     };
     auto made = convert(role, name, upload, fresh, reader);
     if (!made) return without(made.error());
