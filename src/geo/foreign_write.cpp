@@ -371,7 +371,9 @@ Status write_again(std::FILE* in, std::uint64_t bytes, const std::string& stem, 
     TALUS_ASSIGN(const std::string line, input.line());
     const auto head = parse_json(line);
     if (!head || !head->is_object() || head->size() != 1) return nonsense;
-    const auto& [what, content] = *head->items().begin();
+    const json::const_iterator only = head->cbegin();
+    const std::string& what = only.key();
+    const json& content = only.value();
     if (what == "error" && content.is_string()) {
         return Error{visible(content.get<std::string>().substr(0, longest_sentence))};
     }
