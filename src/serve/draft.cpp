@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "core/lower_case.hpp"
 #include "core/try.hpp"
 #include "geo/vector.hpp"
 #include "geo/zip_archive.hpp"
@@ -29,11 +30,6 @@ constexpr int most_scenes_of_a_name = 1000;
 /// Files beside another one that say where it lies or hold its parts.
 constexpr std::array<std::string_view, 14> companions = {".shx", ".dbf",  ".prj", ".cpg", ".hdr", ".tfw", ".tifw",
                                                          ".jgw", ".jpgw", ".pgw", ".wld", ".j2w", ".mtl", ".bin"};
-
-std::string lower_case(std::string text) {
-    for (char& c : text) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-    return text;
-}
 
 bool is_zip(const std::string& name) {
     return lower_case(fs::path(name).extension().string()) == ".zip";
