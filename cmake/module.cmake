@@ -97,7 +97,7 @@ function(talus_test name label)
                        PROCESSORS ${processors} DISCOVERY_TIMEOUT 60)
 endfunction()
 
-# talus_reads_foreign(TARGET): a test program that has files of strangers read, and sees what is opened for it.
+# talus_reads_foreign(TARGET): a test program that has untrusted files read, and sees what is opened for it.
 function(talus_reads_foreign target)
   if(NOT TARGET ${target})
     return()

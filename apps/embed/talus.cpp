@@ -91,7 +91,7 @@ Result<talus::scene::Scene> load_saved(const talus::twin::Journal& journal) {
     if (unpacked.path().empty()) return Error{"cannot make a temporary folder for the built-in scene; set TMPDIR"};
     TALUS_ASSIGN(const fs::path scene, talus::scene::unpack_builtin_scene(unpacked.path()));
     TALUS_TRY(talus::scene::check_saved_overrides(scene, journal.overrides));
-    return load_builtin(journal.overrides);
+    return talus::scene::load_builtin_scene(unpacked.path(), journal.overrides);
 }
 
 /// The text of a file that was saved.

@@ -8,6 +8,7 @@
 #include "core/hash.hpp"
 #include "core/number_or_null.hpp"
 #include "core/try.hpp"
+#include "params/paths.hpp"
 #include "params/scene_text.hpp"
 #include "products/csv.hpp"
 #include "products/results_json.hpp"
@@ -129,18 +130,10 @@ Status write_best_scene(const Calibration& c, const run::SceneSource& source, bo
     const std::vector<std::string>& best = c.best_overrides;
     overrides.insert(overrides.end(), best.begin(), best.end());
     TALUS_ASSIGN(params::SceneSpec spec, scene::parse_scene(file, overrides));
-    for (const params::Section& section : params::scene_sections()) {
-        for (std::size_t i = 0; i < section.count(spec); ++i) {
-            for (const params::Parameter& parameter : section.parameters) {
-                if (parameter.kind != params::ParameterKind::path) continue;
-                const params::ParameterValue value = parameter.get(spec, i);
-                const auto* path = std::get_if<std::string>(&value);
-                if (path == nullptr) continue;
-                const std::string place = fs::absolute(*path).lexically_normal().string(), here = to.string() + "/";
-                parameter.set(spec, i, place.starts_with(here) ? place.substr(here.size()) : place);
-            }
-        }
-    }
+    params::replace_paths(spec, [&](const std::string& path) {
+        const std::string place = fs::absolute(path).lexically_normal().string(), here = to.string() + "/";
+        return place.starts_with(here) ? place.substr(here.size()) : place;
+    });
     const ensemble::RunRecord& record = c.records[*c.result.best];
     const std::string header =
         fmt::format("The best fit of talus calibrate: run {} of {}, misfit {:.4g}. Running this gives hash {}.",

@@ -219,7 +219,7 @@ std::string missing_isolation(const Isolation& isolation) {
     if (isolation.complete()) return {};
     const std::string lacks = isolation.files ? "seccomp" : isolation.network ? "Landlock" : "Landlock and seccomp";
     return "this kernel lacks " + lacks +
-           ": files of strangers are read in a process of their own, but with fewer formats (docs/security.md)";
+           ": untrusted files are read in a separate process, but fewer formats are accepted (docs/security.md)";
 }
 
 Isolation isolate(const std::vector<std::filesystem::path>& readable) {

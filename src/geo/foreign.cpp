@@ -27,13 +27,13 @@ std::string what_failed(const ChildOutcome& outcome, const ForeignReader& reader
     if (outcome.success()) return {};
     if (reader.shall_end && reader.shall_end()) return "cancelled";
     if (outcome.too_slow || outcome.signal == SIGXCPU) {
-        return fmt::format("takes more than {} s to read; it is too large, or made to do harm",
+        return fmt::format("takes more than {} s to read; it is too large or malicious",
                            outcome.too_slow ? reader.patience.count() : reader.processor_time.count());
     }
     if (outcome.signal == SIGXFSZ)
         return fmt::format("has more than {:.3g} GB", static_cast<double>(reader.bytes) / 1e9);
     if (outcome.exit_code == out_of_memory) return "needs too much memory to be read";
-    return "cannot be read: its reader ended unexpectedly; it is damaged, or made to do harm";
+    return "cannot be read: its reader ended unexpectedly; it is damaged or malicious";
 }
 
 }  // namespace

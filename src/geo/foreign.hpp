@@ -10,8 +10,9 @@
 #include "core/result.hpp"
 #include "geo/mend_raster.hpp"
 
-/// Files that strangers made. They are read once, by a child process that sees nothing but their folder, and written
-/// again here from the numbers that it hands over: nothing else of this program opens them. docs/security.md.
+/// Untrusted files, which somebody else made. They are read once, by a child process that sees nothing but their
+/// folder, and written again here from the numbers that it hands over: nothing else of this program opens them.
+/// docs/security.md.
 namespace talus::geo {
 
 /// How the child process is started and what it may take.

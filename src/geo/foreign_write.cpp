@@ -12,6 +12,7 @@
 #include <ogr_spatialref.h>
 #include <ogrsf_frmts.h>
 
+#include "core/lower_case.hpp"
 #include "core/try.hpp"
 #include "core/visible_text.hpp"
 #include "geo/foreign_data.hpp"
@@ -29,7 +30,7 @@ constexpr std::uint64_t most_features = 5'000'000;
 constexpr std::uint32_t most_points = 20'000'000;
 constexpr int deepest_geometry = 8;
 
-const Error nonsense{"cannot be read: it hands over nonsense; it is damaged, or made to do harm"};
+const Error malformed{"cannot be read: its data are malformed; it is damaged or malicious"};
 
 /// Reads no more than there is.
 class Input {
@@ -54,7 +55,7 @@ class Input {
             text.push_back(static_cast<char>(c));
             if (text.size() > longest_header) break;
         }
-        return nonsense;
+        return malformed;
     }
 
   private:
@@ -95,29 +96,29 @@ Result<OGRSpatialReference> reference_of(const std::string& wkt) {
     reference.SetAxisMappingStrategy(OAMS_TRADITIONAL_GIS_ORDER);
     if (wkt.empty()) return reference;
     if (names_files(wkt)) return Error{"states a reference system that names a file of a change of datum"};
-    if (reference.importFromWkt(wkt.c_str()) != OGRERR_NONE) return nonsense;
+    if (reference.importFromWkt(wkt.c_str()) != OGRERR_NONE) return malformed;
     return reference;
 }
 
 Result<ForeignRaster> read_raster(const json& head, double most_cells, int most_bands) {
-    if (!head.is_object()) return nonsense;
+    if (!head.is_object()) return malformed;
     ForeignRaster raster;
     const auto columns = count_in(head, "columns", 1U << 30U), rows = count_in(head, "rows", 1U << 30U);
     const json bands = head.value("bands", json());
     if (!columns || !rows || *columns < 1 || *rows < 1 || !bands.is_array() || bands.empty() ||
         bands.size() > static_cast<std::size_t>(most_bands) ||
         static_cast<double>(*columns) * static_cast<double>(*rows) > most_cells) {
-        return nonsense;
+        return malformed;
     }
     raster.columns = static_cast<int>(*columns);
     raster.rows = static_cast<int>(*rows);
     for (const json& written : bands) {
-        if (!written.is_object()) return nonsense;
+        if (!written.is_object()) return malformed;
         ForeignRaster::Band band;
         band.type = GDALGetDataTypeByName(text_in(written, "type").c_str());
         constexpr std::array known = {GDT_Byte, GDT_Int16, GDT_UInt16, GDT_Int32, GDT_UInt32, GDT_Float32, GDT_Float64};
-        if (std::find(known.begin(), known.end(), band.type) == known.end()) return nonsense;
-        if (!raster.bands.empty() && band.type != raster.bands[0].type) return nonsense;
+        if (std::find(known.begin(), known.end(), band.type) == known.end()) return malformed;
+        if (!raster.bands.empty() && band.type != raster.bands[0].type) return malformed;
         band.nodata = number_in(written, "nodata");
         band.scale = number_in(written, "scale").value_or(1);
         band.offset = number_in(written, "offset").value_or(0);
@@ -129,7 +130,7 @@ Result<ForeignRaster> read_raster(const json& head, double most_cells, int most_
         raster.place.emplace();
         for (std::size_t k = 0; k < 6; ++k) {
             const auto number = number_in({{"v", place[k]}}, "v");
-            if (!number || !std::isfinite(*number)) return nonsense;
+            if (!number || !std::isfinite(*number)) return malformed;
             (*raster.place)[k] = *number;
         }
     }
@@ -143,7 +144,7 @@ Status write_raster(Input& in, const json& head, const std::string& file, double
     TALUS_ASSIGN(const OGRSpatialReference reference, reference_of(raster.crs));
     const GDALDataType type = raster.bands[0].type;
     const std::size_t width = static_cast<std::size_t>(raster.columns) * GDALGetDataTypeSizeBytes(type);
-    if (in.left() != static_cast<std::uint64_t>(raster.rows) * raster.bands.size() * width) return nonsense;
+    if (in.left() != static_cast<std::uint64_t>(raster.rows) * raster.bands.size() * width) return malformed;
     const GdalMessages messages;
     CPLStringList options;
     options.SetNameValue("COMPRESS", "DEFLATE");
@@ -183,7 +184,7 @@ Status write_raster(Input& in, const json& head, const std::string& file, double
     std::vector<char> line(width);
     for (int row = 0; row < raster.rows; ++row) {
         for (int band = 1; band <= data->GetRasterCount(); ++band) {
-            if (!in.take(line.data(), width)) return nonsense;
+            if (!in.take(line.data(), width)) return malformed;
             if (data->GetRasterBand(band)->RasterIO(GF_Write, 0, row, raster.columns, 1, line.data(), raster.columns, 1,
                                                     type, 0, 0, nullptr) != CE_None) {
                 return failed();
@@ -207,7 +208,7 @@ bool read_points(Input& in, OGRSimpleCurve& curve) {
     return true;
 }
 
-/// Empty: nonsense. `none`: the feature has no geometry.
+/// Empty: malformed. `none`: the feature has no geometry.
 std::unique_ptr<OGRGeometry> read_geometry(Input& in, int depth, bool& none) {
     std::uint32_t type = 0, count = 0;
     if (!in.take(type) || depth > deepest_geometry) return nullptr;
@@ -267,28 +268,23 @@ bool read_value(Input& in, OGRFeature& feature, int field, bool is_text) {
 }
 
 Result<ForeignLayer> read_layer(const json& written) {
-    if (!written.is_object()) return nonsense;
+    if (!written.is_object()) return malformed;
     ForeignLayer layer;
     layer.name = text_in(written, "name").substr(0, 200);
     layer.crs = text_in(written, "crs");
     const json fields = written.value("fields", json());
-    if (layer.name.empty() || !fields.is_array() || fields.size() > most_fields) return nonsense;
+    if (layer.name.empty() || !fields.is_array() || fields.size() > most_fields) return malformed;
     for (const json& field : fields) {
-        if (!field.is_object()) return nonsense;
+        if (!field.is_object()) return malformed;
         layer.fields.push_back({text_in(field, "name").substr(0, 200), field.value("text", json(false)) == true});
     }
     return layer;
 }
 
-std::string lower(std::string text) {
-    std::transform(text.begin(), text.end(), text.begin(), [](unsigned char c) { return std::tolower(c); });
-    return text;
-}
-
 /// A name that none of `taken` is, which it joins; SQL does not tell capitals from small letters.
 std::string free_name(const std::string& wanted, std::set<std::string>& taken) {
     std::string name = wanted;
-    for (int k = 2; !taken.insert(lower(name)).second; ++k) name = fmt::format("{}_{}", wanted, k);
+    for (int k = 2; !taken.insert(lower_case(name)).second; ++k) name = fmt::format("{}_{}", wanted, k);
     return name;
 }
 
@@ -314,22 +310,22 @@ Status write_layer(Input& in, GDALDataset& data, const ForeignLayer& from, std::
     }
     for (std::uint64_t k = 0;; ++k) {
         std::uint8_t more = 0;
-        if (!in.take(more) || k > most_features) return nonsense;
+        if (!in.take(more) || k > most_features) return malformed;
         if (more == 0) return {};
         OGRFeature feature(layer->GetLayerDefn());
         bool none = false;
         auto geometry = read_geometry(in, 0, none);
-        if (!geometry && !none) return nonsense;
+        if (!geometry && !none) return malformed;
         if (geometry) feature.SetGeometryDirectly(geometry.release());
         for (std::size_t field = 0; field < from.fields.size(); ++field) {
-            if (!read_value(in, feature, static_cast<int>(field), from.fields[field].is_text)) return nonsense;
+            if (!read_value(in, feature, static_cast<int>(field), from.fields[field].is_text)) return malformed;
         }
         if (layer->CreateFeature(&feature) != OGRERR_NONE) return failed();
     }
 }
 
 Status write_layers(Input& in, const json& head, const std::string& file) {
-    if (!head.is_array() || head.empty() || head.size() > most_layers) return nonsense;
+    if (!head.is_array() || head.empty() || head.size() > most_layers) return malformed;
     const GdalMessages messages;
     const auto failed = [&] { return Error{"cannot be kept: " + messages.failure_or("is the disk full?")}; };
     GDALDriver* driver = GetGDALDriverManager()->GetDriverByName("GPKG");
@@ -340,22 +336,22 @@ Status write_layers(Input& in, const json& head, const std::string& file) {
         TALUS_ASSIGN(const ForeignLayer layer, read_layer(written));
         TALUS_TRY(write_layer(in, *data, layer, names, messages));
     }
-    if (in.left() != 0) return nonsense;
+    if (in.left() != 0) return malformed;
     if (data->CommitTransaction() != OGRERR_NONE) return failed();
     data.reset();
     return messages.has_failure() ? Status(failed()) : Status();
 }
 
 Status write_mesh(Input& in, const json& parts_read, const std::string& file, std::vector<std::string>& parts) {
-    if (!parts_read.is_array() || parts_read.size() > 100 || in.left() > longest_header) return nonsense;
+    if (!parts_read.is_array() || parts_read.size() > 100 || in.left() > longest_header) return malformed;
     for (const json& part : parts_read) {
-        if (!part.is_string()) return nonsense;
+        if (!part.is_string()) return malformed;
         parts.push_back(part.get<std::string>());
     }
     std::string text(in.left(), ' ');
-    if (!in.take(text.data(), text.size())) return nonsense;
+    if (!in.take(text.data(), text.size())) return malformed;
     const auto mesh = read_foreign_mesh(text);
-    if (!mesh) return nonsense;
+    if (!mesh) return malformed;
     std::ofstream out(file, std::ios::binary);
     out << to_text(*mesh);
     out.close();
@@ -370,13 +366,15 @@ Status write_again(std::FILE* in, std::uint64_t bytes, const std::string& stem, 
     Input input(in, bytes);
     TALUS_ASSIGN(const std::string line, input.line());
     const auto head = parse_json(line);
-    if (!head || !head->is_object() || head->size() != 1) return nonsense;
-    const auto& [what, content] = *head->items().begin();
+    if (!head || !head->is_object() || head->size() != 1) return malformed;
+    const json::const_iterator only = head->cbegin();
+    const std::string& what = only.key();
+    const json& content = only.value();
     if (what == "error" && content.is_string()) {
         return Error{visible(content.get<std::string>().substr(0, longest_sentence))};
     }
     const char* ending = what == "raster" ? ".tif" : what == "layers" ? ".gpkg" : what == "mesh" ? ".roofs.json" : "";
-    if (*ending == 0) return nonsense;
+    if (*ending == 0) return malformed;
     file = stem + ending;
     Status written = what == "raster"   ? write_raster(input, content, file, most_cells, most_bands)
                      : what == "layers" ? write_layers(input, content, file)

@@ -8,6 +8,7 @@
 
 #include <fmt/format.h>
 
+#include "core/lower_case.hpp"
 #include "core/try.hpp"
 #include "geo/foreign_data.hpp"
 #include "geo/mesh_faces.hpp"
@@ -15,11 +16,6 @@
 
 namespace talus::geo {
 namespace {
-
-std::string lower_case(std::string text) {
-    std::transform(text.begin(), text.end(), text.begin(), [](unsigned char c) { return std::tolower(c); });
-    return text;
-}
 
 bool ends_with(const std::string& text, const std::string& end) {
     return text.size() >= end.size() && text.compare(text.size() - end.size(), end.size(), end) == 0;

@@ -7,7 +7,7 @@
 
 #include "builtin_scene_files.hpp"
 #include "core/try.hpp"
-#include "params/fields.hpp"
+#include "params/paths.hpp"
 
 namespace talus::scene {
 
@@ -33,16 +33,7 @@ void name_unpacked_files(Scene& scene, const std::filesystem::path& folder, cons
     };
     scene.file = named(scene.file.string());
     for (InputFile& input : scene.inputs) input.path = named(input.path);
-    for (const params::Section& section : params::scene_sections()) {
-        for (std::size_t index = 0; index < section.count(scene.spec); ++index) {
-            for (const params::Parameter& parameter : section.parameters) {
-                const params::ParameterValue value = parameter.get(scene.spec, index);
-                const auto* path = std::get_if<std::string>(&value);
-                if (parameter.kind == params::ParameterKind::path && path)
-                    parameter.set(scene.spec, index, named(*path));
-            }
-        }
-    }
+    params::replace_paths(scene.spec, named);
 }
 
 Result<Scene> load_builtin_scene(const std::filesystem::path& folder, const std::vector<std::string>& overrides) {

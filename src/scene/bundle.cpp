@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 
 #include "core/try.hpp"
+#include "params/paths.hpp"
 #include "scene/load.hpp"
 #include "scene/parse.hpp"
 #include "scene/scene_text_edits.hpp"
@@ -89,8 +90,9 @@ Result<Packed> write_bundle(const fs::path& scene_file, const fs::path& archive)
     Packed done;
     Status failed;
     const auto places = places_of(root);
-    for_each_path(parsed.spec, [&](const std::string& key, const std::string&, const std::string&,
-                                   const std::string& path) {
+    params::for_each_path(parsed.spec, [&](const params::Section& section, std::size_t index,
+                                           const params::Parameter& parameter, const std::string& path) {
+        const std::string key = key_path(section, index, parameter);
         if (!failed) return;
         if (const auto known = packed.find(path); known != packed.end()) {
             edits.emplace_back(places.at(key), known->second);

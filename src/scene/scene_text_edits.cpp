@@ -5,6 +5,8 @@
 
 #include <fmt/format.h>
 
+#include "params/fields.hpp"
+
 namespace talus::scene {
 
 std::map<std::string, toml::source_position> places_of(const toml::table& root) {
@@ -49,7 +51,7 @@ Result<std::string> text_of(const std::filesystem::path& file) {
     text << in.rdbuf();
     if (!in) return Error{file.string() + ": cannot be read"};
     std::string all = text.str();
-    if (all.starts_with("\xEF\xBB\xBF")) all.erase(0, 3);  // columns are counted without the mark
+    if (all.starts_with("\xEF\xBB\xBF")) all.erase(0, 3);
     return all;
 }
 

@@ -9,7 +9,7 @@
 
 #include "core/input_file.hpp"
 #include "core/try.hpp"
-#include "geo/mesh.hpp"
+#include "params/paths.hpp"
 #include "scene/bundle.hpp"
 #include "scene/load.hpp"
 #include "scene/parse.hpp"
@@ -54,9 +54,8 @@ Result<fs::path> find_scene_in(const fs::path& folder, const fs::path& archive) 
 
 std::set<std::string> paths_of(const params::SceneSpec& spec) {
     std::set<std::string> paths;
-    for_each_path(spec, [&](const std::string&, const std::string&, const std::string&, const std::string& path) {
-        paths.insert(path);
-    });
+    params::for_each_path(spec, [&](const params::Section&, std::size_t, const params::Parameter&,
+                                    const std::string& path) { paths.insert(path); });
     return paths;
 }
 
@@ -114,9 +113,10 @@ class Rewriting {
         std::vector<std::pair<toml::source_position, std::string>> edits;
         Status failed;
         const auto places = places_of(root);
-        for_each_path(parsed.spec, [&](const std::string& at, const std::string& section, const std::string& key,
-                                       const std::string& path) {
+        params::for_each_path(parsed.spec, [&](const params::Section& section, std::size_t index,
+                                               const params::Parameter& parameter, const std::string& path) {
             if (!failed) return;
+            const std::string at = key_path(section, index, parameter);
             if (!lies_in(path, from_.parent_path())) {
                 failed =
                     Error{fmt::format("{}: {} in its scene names a file outside the archive", archive.string(), at)};
@@ -126,7 +126,7 @@ class Rewriting {
             std::error_code ignored;
             // What is not there, the scene's loading says.
             if (place == places.end() || !fs::is_regular_file(path, ignored)) return;
-            const auto again = write_again(path, section, key, parsed.spec.terrain.band);
+            const auto again = write_again(path, section.name, parameter.key, parsed.spec.terrain.band);
             if (!again) {
                 failed = Error{parsed.at(at) + ": " + again.error().message};
             } else {
@@ -246,18 +246,10 @@ void name_originals(Scene& scene, const std::vector<OriginalInput>& originals) {
     scene.inputs = std::move(inputs);
     std::map<std::string, std::string> names;
     for (const OriginalInput& original : originals) names[original.file] = original.before.front().path;
-    for (const params::Section& section : params::scene_sections()) {
-        for (std::size_t index = 0; index < section.count(scene.spec); ++index) {
-            for (const params::Parameter& parameter : section.parameters) {
-                const params::ParameterValue value = parameter.get(scene.spec, index);
-                const auto* path = std::get_if<std::string>(&value);
-                if (parameter.kind != params::ParameterKind::path || path == nullptr) continue;
-                if (const auto name = names.find(*path); name != names.end()) {
-                    parameter.set(scene.spec, index, name->second);
-                }
-            }
-        }
-    }
+    params::replace_paths(scene.spec, [&](const std::string& path) {
+        const auto name = names.find(path);
+        return name != names.end() ? name->second : path;
+    });
 }
 
 Status check_saved_overrides(const fs::path& scene_file, const std::vector<std::string>& overrides) {
@@ -270,12 +262,12 @@ Status check_saved_overrides(const fs::path& scene_file, const std::vector<std::
     }
     TALUS_ASSIGN(const auto parsed, parse_scene_with_places(scene_file, overrides));
     Status outside;
-    for_each_path(parsed.spec, [&](const std::string& at, const std::string&, const std::string&,
-                                   const std::string& path) {
+    params::for_each_path(parsed.spec, [&](const params::Section& section, std::size_t index,
+                                           const params::Parameter& parameter, const std::string& path) {
         if (!outside || named.contains(path)) return;
         outside = Error{fmt::format(
             "{}: the session sets a file that its scene does not name, {}; make a variant of the scene that names it",
-            parsed.at(at), one_line(path, 200))};
+            parsed.at(key_path(section, index, parameter)), one_line(path, 200))};
     });
     return outside;
 }

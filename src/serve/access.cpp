@@ -9,16 +9,12 @@
 
 #include <fmt/format.h>
 
+#include "core/lower_case.hpp"
+
 namespace talus::serve {
 namespace {
 
 constexpr std::size_t shortest_token = 16, longest_token = 128;
-
-std::string lower_case(std::string_view text) {
-    std::string lower(text);
-    for (char& c : lower) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-    return lower;
-}
 
 bool has_port(std::string_view name) {
     const std::size_t colon = name.rfind(':');

@@ -10,6 +10,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "core/lower_case.hpp"
 #include "core/try.hpp"
 #include "geo/vector.hpp"
 #include "geo/zip_archive.hpp"
@@ -31,11 +32,6 @@ constexpr int most_scenes_of_a_name = 1000;
 /// Files beside another one that say where it lies or hold its parts.
 constexpr std::array<std::string_view, 14> companions = {".shx", ".dbf",  ".prj", ".cpg", ".hdr", ".tfw", ".tifw",
                                                          ".jgw", ".jpgw", ".pgw", ".wld", ".j2w", ".mtl", ".bin"};
-
-std::string lower_case(std::string text) {
-    for (char& c : text) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-    return text;
-}
 
 bool is_zip(const std::string& name) {
     return lower_case(fs::path(name).extension().string()) == ".zip";
@@ -207,7 +203,11 @@ Status Draft::take(std::string_view role, const std::string& name, const fs::pat
         fs::remove_all(fresh, ignored);
         fs::remove_all(folder_ / "foreign", ignored);
         fs::remove(upload, ignored);
-        return Error{plain(error.message)};
+        // By the name that its user gave it.
+        std::string message = plain(error.message);
+        const std::string kept = upload_name_of(name);
+        if (message.starts_with(kept + ":")) message.replace(0, kept.size(), name);
+        return Error{std::move(message)};
     };
     auto made = convert(role, name, upload, fresh, reader);
     if (!made) return without(made.error());

@@ -111,7 +111,7 @@ class Session final : public Watcher {
     [[nodiscard]] Clock::duration people_interval() const;
 
     Thread thread_;
-    std::string id_;
+    std::string id_;  // of this session: pages that reconnect see whether it is still the same
     std::shared_ptr<const scene::Scene> scene_;
     Tokens tokens_;
     People people_;

@@ -1,4 +1,4 @@
-// What files of strangers say, and what nothing opens for them.
+// What untrusted files say, and what nothing opens for them.
 #include <chrono>
 #include <cmath>
 #include <filesystem>
@@ -442,11 +442,11 @@ TEST_P(Foreign, a_child_that_lies_leaves_a_sentence_and_nothing_else) {
         EXPECT_TRUE(fs::is_empty(folder_.path() / "out")) << script;
         return made.error().message;
     };
-    const std::string nonsense = "hands over nonsense";
-    EXPECT_THAT(lie("exit 0"), HasSubstr(nonsense));
+    const std::string malformed = "its data are malformed";
+    EXPECT_THAT(lie("exit 0"), HasSubstr(malformed));
     EXPECT_THAT(lie("kill -9 $$"), HasSubstr("ended unexpectedly"));
     EXPECT_THAT(lie("kill -11 $$"), HasSubstr("ended unexpectedly"));
-    EXPECT_THAT(lie("echo '{\"raster\": 3}'"), HasSubstr(nonsense));
+    EXPECT_THAT(lie("echo '{\"raster\": 3}'"), HasSubstr(malformed));
     const std::string head =
         R"({"raster": {"columns": 2, "rows": %s, "bands": [{"type": "%s", "nodata": null}], "crs": "%s"}})";
     const auto raster = [&](const char* rows, const char* type, const char* crs, int bytes) {
@@ -454,19 +454,19 @@ TEST_P(Foreign, a_child_that_lies_leaves_a_sentence_and_nothing_else) {
         for (const char* part : {rows, type, crs}) text.replace(text.find("%s"), 2, part);
         return lie("echo '" + text + "'; head -c " + std::to_string(bytes) + " /dev/zero");
     };
-    EXPECT_THAT(raster("1000000000", "Float32", "", 8), HasSubstr(nonsense));
-    EXPECT_THAT(raster("-2", "Float32", "", 8), HasSubstr(nonsense));
-    EXPECT_THAT(raster("2", "CFloat64", "", 64), HasSubstr(nonsense));
-    EXPECT_THAT(raster("2", "Float32", "", 15), HasSubstr(nonsense));
-    EXPECT_THAT(raster("2", "Float32", "", 17), HasSubstr(nonsense));
-    EXPECT_THAT(raster("2", "Float32", "nonsense", 16), HasSubstr(nonsense));
+    EXPECT_THAT(raster("1000000000", "Float32", "", 8), HasSubstr(malformed));
+    EXPECT_THAT(raster("-2", "Float32", "", 8), HasSubstr(malformed));
+    EXPECT_THAT(raster("2", "CFloat64", "", 64), HasSubstr(malformed));
+    EXPECT_THAT(raster("2", "Float32", "", 15), HasSubstr(malformed));
+    EXPECT_THAT(raster("2", "Float32", "", 17), HasSubstr(malformed));
+    EXPECT_THAT(raster("2", "Float32", "nonsense", 16), HasSubstr(malformed));
     EXPECT_THAT(raster("2", "Float32", "PARAMETERFILE", 16), HasSubstr("names a file"));
     const std::string layers = R"(echo '{"layers": [{"name": "a", "crs": "", "fields": []}]}'; printf ')";
-    EXPECT_THAT(lie(layers + R"(\001\003\000\000\000\377\377\377\377')"), HasSubstr(nonsense));
-    EXPECT_THAT(lie(layers + R"(\001\007\000\000\000\001\000\000\000\007\000')"), HasSubstr(nonsense));
-    EXPECT_THAT(lie(layers + R"(\000x')"), HasSubstr(nonsense));
+    EXPECT_THAT(lie(layers + R"(\001\003\000\000\000\377\377\377\377')"), HasSubstr(malformed));
+    EXPECT_THAT(lie(layers + R"(\001\007\000\000\000\001\000\000\000\007\000')"), HasSubstr(malformed));
+    EXPECT_THAT(lie(layers + R"(\000x')"), HasSubstr(malformed));
     EXPECT_THAT(lie(R"(echo '{"mesh": []}'; echo '{"talus_roofs": 1, "buildings": [{"roofs": [{"z": 1e999}]}]}')"),
-                HasSubstr(nonsense));
+                HasSubstr(malformed));
     EXPECT_THAT(lie("printf '{\"error\": \"\\\\u202etxt.exe\\\\u001b[31m\"}\\n'"),
                 testing::AllOf(HasSubstr("\\u202E"), HasSubstr("\\u001B")));
     EXPECT_EQ(raster("2", "Float32", "", 16), "(taken)") << "the others are refused for what is wrong with them";

@@ -2,7 +2,7 @@
 
 #include <string>
 
-/// Targets that take what strangers send: beside what every target requires, no file outside their folder is opened and
+/// Targets that take untrusted files: beside what every target requires, no file outside their folder is opened and
 /// no connection made, by this process or the one that reads for it (support/witness.hpp).
 namespace talus::fuzz {
 

@@ -4,7 +4,7 @@
 
 namespace talus::test {
 
-/// How the tests have files of strangers read. Sanitizers take terabytes of address space.
+/// How the tests have untrusted files read. Sanitizers take terabytes of address space.
 inline geo::ForeignReader foreign_reader() {
     geo::ForeignReader reader;
     reader.program = FOREIGN_CHILD;

@@ -53,7 +53,7 @@ export function openPage(page: HTMLElement, token: string, info: SceneInfo, terr
   if (former) tellFormer(former, place);
   twin.connection.watch(({ state }) => {
     if (state === "refused") openDialog(dialog("This link is no longer valid", h("p", { class: "hint" },
-      "talus was started again, with new links: ask for the present one. The session that this page shows has ended; what was not saved is gone.")));
+      "talus was restarted, and its links have changed: ask for the new one. The session on this page has ended; edits that were not saved are lost.")));
   });
   twin.live.start();
 }
@@ -61,8 +61,8 @@ export function openPage(page: HTMLElement, token: string, info: SceneInfo, terr
 function tellFormer(former: FormerSession, place: StartPage): void {
   const saved = place.available && place.role === "controller"
     ? button("Saved sessions", { class: "primary", onclick: () => location.assign("#start") }) : null;
-  openDialog(dialog("This session is new", h("p", { class: "hint" }, whatIsGone(former)),
-    saved ? null : h("p", { class: "hint" }, "A session that was saved as a file is opened by talus start with the name of the file."),
+  openDialog(dialog("This is a new session", h("p", { class: "hint" }, whatIsGone(former)),
+    saved ? null : h("p", { class: "hint" }, "Open a session that was saved as a file with: talus start FILE"),
     h("div", { class: "row answers" }, saved)));
 }
 

@@ -1,4 +1,4 @@
-// The server is started again under a page that stays open: the page tells that the session is new and what is gone, that its link is no longer
+// The server is restarted while a page stays open: the page says that the session is new and what was lost, or that its link is no longer
 // valid, or leads to the start page, which offers the saved session.
 import { mkdtempSync, rmSync } from "node:fs";
 import { tmpdir } from "node:os";
@@ -22,9 +22,9 @@ export async function testRestart(run) {
     await until(() => server.ask("scenarios/A/state"), (s) => s.time_s > 1, "a second");
     await shows(page, () => Number(document.querySelector(".clock").textContent.split(" ")[0]) > 1, "its time");
     await again(tokens);
-    const told = page.locator("dialog[open]", { hasText: "This session is new" });
+    const told = page.locator("dialog[open]", { hasText: "This is a new session" });
     await told.waitFor();
-    assert.match(await told.textContent(), /The session “.*Sham Tseng.*” has ended\. Its run is gone: A to [0-9.]+ s\. What was drawn or changed in it is gone/);
+    assert.match(await told.textContent(), /The session “.*Sham Tseng.*” has ended\. Lost: run A \([0-9.]+ s\), all edits that were not saved/);
     assert.match(await told.textContent(), /talus start/);
     await page.screenshot({ path: join(run.output, "new-session.png") });
     await page.keyboard.press("Escape");
@@ -62,7 +62,7 @@ export async function testRestart(run) {
     await start(server.port);
     const card = page.locator(".former");
     await card.waitFor();
-    assert.match(await card.textContent(), /talus was started again.*“.*Sham Tseng.*” has ended/);
+    assert.match(await card.textContent(), /talus was restarted.*“.*Sham Tseng.*” has ended/);
     await page.screenshot({ path: join(run.output, "start-again.png") });
     await card.locator("text=Open “Before the restart”").click();
     await shows(page, () => window.talusStats?.frames > 0 && document.querySelector(".transport"), "the saved session");

@@ -165,11 +165,13 @@ export async function testSharing(run) {
 
   await testPhone(run, server);
 
-  await run.check("after a break the page comes back by itself and shows the present state", async () => {
+  await run.check("after a restart of the server the page comes back by itself and shows the present state", async () => {
     await server.stop();
     await until(() => ada.textContent(".connection"), (t) => /Connection lost|Reconnecting/.test(t), "the break is told");
     assert.equal(await ada.isDisabled(".run"), true);
     const next = await run.start(["--token", server.token, "--token", server.viewerToken], { port: server.port });
+    await ada.locator("dialog[open]", { hasText: "This is a new session" }).waitFor();
+    await ada.keyboard.press("Escape");
     await until(() => ada.locator(".connection:visible").count(), (n) => n === 0, "the connection");
     await until(async () => Math.abs((await shownTime(ada)) - (await next.ask("scenarios/A/state")).time_s), (d) => d < 0.2, "the present time");
     await until(() => ada.isDisabled(".run"), (d) => !d, "control again");

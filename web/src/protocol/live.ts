@@ -9,7 +9,7 @@ export interface LiveEvents {
   message(message: ServerMessage): void;
   frame(frame: Frame): void;
   connection(connection: Connection, retryInSeconds: number): void;
-  /** Asked after a break, before it connects again: a server that refuses a WebSocket cannot say why. False: for good. */
+  /** Asked after a break, before it connects again: a server that refuses a WebSocket cannot say why. False: it does not. */
   mayReturn(): Promise<boolean>;
 }
 
@@ -20,6 +20,7 @@ export class Live {
   private socket: WebSocket | null = null;
   private wait_s = firstWait_s;
   private everOpen = false;
+  private asking = false;
   private view: View | null = null;
   /** Given by the last hello: sent again after a break, so that the person is recognised. */
   secret: string | null = null;
@@ -82,9 +83,11 @@ export class Live {
   }
 
   private async again(): Promise<void> {
-    this.events.connection("lost", 0);
-    if (await this.events.mayReturn()) this.start();
-    else this.events.connection("refused", 0);
+    if (this.asking) return;
+    this.asking = true;
+    const mayReturn = await this.events.mayReturn();
+    this.asking = false;
+    if (mayReturn) this.start();
   }
   private send(message: object): void {
     if (this.socket?.readyState === WebSocket.OPEN) this.socket.send(JSON.stringify(message));

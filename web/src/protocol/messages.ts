@@ -11,7 +11,7 @@ export interface Person { id: string; name: string; role: Role; colour: string; 
 export interface You { id: string; name: string; role: Role; colour: string; secret: string }
 export interface Session {
   protocol: number;
-  /** Another one after a restart of the server. */
+  /** Changes when the server is restarted or another session is opened. */
   id: string;
   program: string;
   title: string;

@@ -83,13 +83,13 @@ class Start {
     const former = takeFormer();
     if (former === null) return;
     const saved = (this.now.sessions ?? []).filter((s) => s.title === former.title).sort((a, b) => b.saved_at.localeCompare(a.saved_at))[0];
-    this.former.replaceChildren(h("div", { class: "card bad former", role: "alert" }, h("b", {}, "talus was started again"), h("p", {}, whatIsGone(former)),
+    this.former.replaceChildren(h("div", { class: "card bad former", role: "alert" }, h("b", {}, "talus was restarted"), h("p", {}, whatIsGone(former)),
       saved ? h("div", { class: "row answers" }, button(`Open “${saved.name}”, saved ${dateText(saved.saved_at)}`, { class: "primary", onclick: () => void this.open({ session: saved.id }, saved.name) })) : null));
   }
   private lost(error: unknown): void {
     if (error instanceof Refused && error.status === 401) {
       this.state.replaceChildren(h("div", { class: "card bad", role: "alert" }, h("b", {}, "This link is no longer valid"),
-        h("p", {}, "talus was started again, with new links: open the present one.")));
+        h("p", {}, "talus was restarted, and its links have changed: open the new one.")));
       return;
     }
     this.state.replaceChildren(h("div", { class: "card bad", role: "alert" }, h("b", {}, "talus does not answer"),

@@ -122,9 +122,12 @@ export class Twin {
         return false;
       }
     } catch (error) {
-      return !(error instanceof Refused && (error.status === 401 || error.status === 403));
+      if (error instanceof Refused && (error.status === 401 || error.status === 403)) {
+        this.connection.value = { state: "refused", retryIn_s: 0 };
+        return false;
+      }
     }
-    return true;  // hello tells which session it is
+    return true;  // hello tells which session it is; a server that does not answer is tried again
   }
   /** To the session that is open now, or to the start page, where the person is told what is gone. */
   private leave(): void {
