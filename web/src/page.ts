@@ -12,6 +12,7 @@ import { exportButtons } from "./panels/exports";
 import { impactColour, impactsPanel, largestPressure } from "./panels/impacts";
 import { help, keys } from "./panels/keys";
 import { legends, scaleAndCompass } from "./panels/legends";
+import { measuring } from "./panels/measuring";
 import { controls } from "./panels/controls";
 import { paneNames } from "./panels/pane_names";
 import { people } from "./panels/people";
@@ -144,7 +145,7 @@ function buildPage(page: HTMLElement, twin: Twin): void {
   const scale = scaleAndCompass(twin, stage, readOut);
   stage.covers = [bar.camera, bar.show, scale];
   // Legends stand below the picture: over it they would hide debris and houses.
-  const middle = h("main", { class: "middle" }, triggerBanner(twin), h("div", { class: "view" }, stage.element, bar.camera, bar.show, scale), key);
+  const middle = h("main", { class: "middle" }, triggerBanner(twin), h("div", { class: "view" }, stage.element, bar.camera, bar.show, measuring(twin, stage, drawing), scale), key);
   // Names of the two views stand below the bars, which wrap on a narrow page, and so does the ground in a plan. On a phone only the camera's is there.
   const bars = new ResizeObserver(() => {
     const below = bar.show.offsetHeight > 0 ? bar.show.offsetTop + bar.show.offsetHeight : bar.camera.offsetTop + bar.camera.offsetHeight;

@@ -2,7 +2,7 @@ import { describe, expect, it } from "vitest";
 import type { Grid } from "../src/protocol/grid";
 import { Relief } from "../src/scene/relief";
 import { crestAt } from "../src/scene/solids";
-import { acrossPath, chainageAt, crossings, groundMeasures } from "../src/state/measures";
+import { acrossPath, areaMeasures, chainageAt, crossings, groundMeasures, lineMeasures } from "../src/state/measures";
 
 /** A gully along x = 50 that falls to the south by 1 in 10; its sides rise by 1 in 2. */
 const grid: Grid = { west: 0, south: 0, cell: 1, columns: 100, rows: 100,
@@ -25,6 +25,32 @@ describe("what is drawn on the ground", () => {
     const [a, b] = acrossPath(path, [55, 30], 4, relief) ?? [];
     expect([a?.[1], b?.[1]]).toEqual([30, 30]);
     expect([a?.[0], b?.[0]].sort()).toEqual([41.5, 58.5]);
+  });
+});
+
+describe("a measurement", () => {
+  it("of a line down the gully has its fall, its slope and its length over the ground", () => {
+    const down = lineMeasures([[50, 80], [50, 50], [50, 20]], relief);
+    expect(down.plan_m).toBe(60);
+    expect(down.rise_m).toBeCloseTo(-6, 3);
+    expect(down.slope_deg).toBeCloseTo(5.71, 2);
+    expect(down.steepest_deg).toBeCloseTo(5.71, 1);
+    expect(down.ground_m).toBeCloseTo(60 * Math.hypot(1, 0.1), 2);
+  });
+  it("across the gully returns to its height, but not over level ground", () => {
+    const across = lineMeasures([[30, 50], [70, 50]], relief);
+    expect(across.rise_m).toBeCloseTo(0, 3);
+    expect(across.slope_deg).toBeCloseTo(0, 2);
+    expect(across.steepest_deg).toBeCloseTo(26.57, 1);
+    expect(across.highest_m - across.lowest_m).toBeGreaterThan(9);
+    expect(across.ground_m).toBeGreaterThan(43);
+  });
+  it("of an outline has its area in plan and over the slope, of one that crosses itself none", () => {
+    const side = areaMeasures([[60, 30], [80, 30], [80, 50], [60, 50]], relief);
+    expect(side?.plan_m2).toBe(400);
+    expect(side?.ground_m2).toBeCloseTo(400 * Math.hypot(1, 0.5, 0.1), 0);
+    expect(areaMeasures([[60, 30], [80, 50], [80, 30], [60, 50]], relief)).toBeNull();
+    expect(areaMeasures([[60, 30], [80, 30]], relief)).toBeNull();
   });
 });
 

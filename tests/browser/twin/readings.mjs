@@ -170,6 +170,38 @@ export async function testReadings(run) {
     await page.locator(".tab-panel:visible button:has-text('Remove')").click();
   });
 
+  await run.check("a measurement by clicks: distance, height, slope and area, and the profile of its line", async () => {
+    await page.click("[aria-label='Top view']");
+    await page.click("[aria-label='Measure']");
+    const box = await boxOf(page.locator(".stage canvas"));
+    const places = [];
+    for (const [u, v] of [[0.42, 0.55], [0.5, 0.6], [0.44, 0.68]]) {
+      await page.mouse.move(box.x + u * box.width, box.y + v * box.height);
+      const told = await until(() => page.textContent(".read-out"), (t) => /E [\d.]+ {2}N [\d.]+ {2}ground/.test(t) && t !== places.at(-1)?.told, "place of the pointer");
+      const [, east, north, ground] = /E ([\d.]+) {2}N ([\d.]+) {2}ground ([\d.]+)/.exec(told);
+      places.push({ told, east: Number(east), north: Number(north), ground: Number(ground) });
+      await page.mouse.click(box.x + u * box.width, box.y + v * box.height);
+    }
+    await page.keyboard.press("Enter");
+    const [a, b, c] = places;
+    const near = (value, wanted, by, what) => assert.ok(Math.abs(value - wanted) <= by, `${what}: ${value}, not ${wanted}`);
+    const text = await until(() => page.textContent(".measuring"), (t) => /Area inside/.test(t), "the area");
+    const distance = Math.hypot(b.east - a.east, b.north - a.north) + Math.hypot(c.east - b.east, c.north - b.north);
+    near(Number(/Distance([\d.]+)/.exec(text)?.[1]), distance, 1 + 0.01 * distance, "distance");
+    near(Number(/Height difference([+−]?[\d.]+)/.exec(text)?.[1].replace("−", "-")), c.ground - a.ground, 0.3, "height difference");
+    near(Number(/Area inside([\d.]+)/.exec(text)?.[1]), Math.abs((b.east - a.east) * (c.north - a.north) - (c.east - a.east) * (b.north - a.north)) / 2, 0.02 * distance ** 2, "area");
+    assert.match(text, /Slope[\d.]+° end to end, steepest part \d+°/);
+    await page.click(".measuring button:has-text('Profile')");
+    const chart = page.locator(".tab-panel:visible .chart-plot").first();
+    await until(() => chart.getAttribute("aria-label"), (t) => /Ground from 0 to .* m/.test(t ?? ""), "profile");
+    await run.shot(page, "10-measure");
+    await page.click(".measuring button:has-text('Remove')");
+    await page.locator(".measuring").waitFor({ state: "hidden" });
+    await page.locator(".tab-panel:visible button:has-text('Remove')").click();
+    await page.click("[aria-label='Orbit']");
+    await page.click("[aria-label='Fit']");
+  });
+
   await run.check("impacts: sorted by a click on the head, a row leads to its house; classes have their thresholds", async () => {
     await page.click("[data-tab=impact]");
     const scene = await server.ask("scene");

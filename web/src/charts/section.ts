@@ -51,8 +51,8 @@ export function sectionStations(line: readonly Point[], count = 160): { along: n
 }
 
 export function sectionPanel(twin: Twin, stage: Stage): { element: HTMLElement; refresh(): void } {
-  const heights = new Chart({ title: "Cross-section, heights", x: { label: "Distance", unit: "m" }, y: { label: "Height", unit: "m" }, curves: [], height: 230,
-    empty: "Choose “Draw a section”, then click two points on the ground, across the channel." });
+  const heights = new Chart({ title: "Section, heights", x: { label: "Distance", unit: "m" }, y: { label: "Height", unit: "m" }, curves: [], height: 230,
+    empty: "Choose “Draw a section”, then click two points on the ground, across the channel. “Measure” makes one along any line." });
   const depths = new Chart({ title: "Depth along the section", x: { label: "Distance", unit: "m" }, y: { label: "Depth", unit: "m" }, curves: [], height: 150,
     empty: "The depth along the line is plotted here." });
   const draw = button("Draw a section", { icon: "section", class: "small", onclick: () =>

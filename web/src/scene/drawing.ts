@@ -16,6 +16,12 @@ import type { Hit, Stage } from "./stage";
 
 const drawColour = "#d98a00";
 
+/** Lines that belong to the page, not to the setup. */
+type Ruled = "section" | "measure";
+const isRuled = (shape: Shape | Ruled): shape is Ruled => shape === "section" || shape === "measure";
+const subjects: Record<Shape | Ruled, string> = { release: "A release", barrier: "A barrier", building: "A building", zone: "A zone", bed: "A bed", inflow: "An inflow",
+  section: "A cross-section", measure: "A measurement" };
+
 /** Nearer than this to the last corner, px, a click is the second of a double click. */
 const sameSpot_px = 6;
 /** And sooner than this, ms, once a shape of two points is whole. */
@@ -52,9 +58,9 @@ export class Drawing {
     watchAll([twin.selection, twin.edited, ...twin.every("setup"), twin.controller, twin.you, twin.tool], reselect);
   }
 
-  get shape(): Shape | "section" | null {
+  get shape(): Shape | Ruled | null {
     const tool = this.twin.tool.value;
-    return tool.kind === "draw" ? tool.shape : tool.kind === "section" ? "section" : null;
+    return tool.kind === "draw" ? tool.shape : tool.kind === "section" || tool.kind === "measure" ? tool.kind : null;
   }
   /** Ends drawing with the current corners. */
   finish(): void {
@@ -62,17 +68,18 @@ export class Drawing {
     const points = this.draft.value;
     if (shape === null) return;
     const byLine = this.twin.inflowByLine.value;
-    const fewest = shape === "section" ? 2 : fewestPoints(shape, byLine);
+    const fewest = isRuled(shape) ? 2 : fewestPoints(shape, byLine);
     if (points.length < fewest) {
-      this.twin.notice(`${shape === "inflow" ? "An inflow" : `A ${shape === "section" ? "cross-section" : shape}`} needs at least ${fewest} points; click on the ground to add them.`, "error");
+      this.twin.notice(`${subjects[shape]} needs at least ${fewest} points; click on the ground to add them.`, "error");
       return;
     }
-    if (shape !== "section" && !drawnAsLine(shape, byLine) && crossesItself(points)) {
+    if (!isRuled(shape) && !drawnAsLine(shape, byLine) && crossesItself(points)) {
       this.twin.notice(`The outline of the ${shape} crosses itself; remove the last point with Backspace.`, "error");
       return;
     }
     this.twin.tool.value = { kind: "none" };
     if (shape === "section") this.twin.section.value = [...points];
+    else if (shape === "measure") this.twin.measured.value = [...points];
     else void create(this.twin, shape, points);
   }
   cancel(): void {
@@ -112,7 +119,7 @@ export class Drawing {
     this.redraw();
     // A section and an inflow's line are straight: two points define them.
     const { shape } = this;
-    if (shape !== null && this.draft.value.length === (shape === "section" ? 2 : mostPoints(shape, this.twin.inflowByLine.value))) this.finish();
+    if (shape !== null && this.draft.value.length === (shape === "section" ? 2 : shape === "measure" ? Infinity : mostPoints(shape, this.twin.inflowByLine.value))) this.finish();
   }
 
   private listen(): void {
@@ -251,7 +258,7 @@ export class Drawing {
     const view = this.stage.views.get(this.twin.edited.value);
     if (view && points.length > 1) {
       const byLine = this.twin.inflowByLine.value;
-      const ring = closed || (shape !== null && shape !== "section" && !drawnAsLine(shape, byLine) && points.length > 2);
+      const ring = closed || (shape !== null && !isRuled(shape) && !drawnAsLine(shape, byLine) && points.length > 2);
       const strokes = [view.relief.drape(points, 0.4, ring)];
       const flows = shape === null ? this.twin.selection.value?.shape === "inflow" && !closed : shape === "inflow" && byLine;
       if (flows) for (const arrow of arrowsOf(points)) strokes.push(view.relief.drape(arrow, 0.4));

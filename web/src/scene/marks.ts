@@ -1,6 +1,5 @@
-// Marks of other people, probes, the section line, and the user's own mark.
+// Marks of other people, probes, the lines of the section and of the measurement, and the user's own mark.
 import type { Line2 } from "three/examples/jsm/lines/Line2.js";
-import type { ScenarioName } from "../protocol/frame";
 import type { Place } from "../protocol/messages";
 import { watchAll } from "../state/cell";
 import { fixed, quantity } from "../state/format";
@@ -13,12 +12,14 @@ import type { ShownLayers } from "./shown_layers";
 import type { Stage } from "./stage";
 
 const markEvery_ms = 120;
+const sectionColour = "#8a4a8f";
+const measureColour = "#0a5fae";
 
 export function marks(twin: Twin, stage: Stage, layers: ShownLayers): HTMLElement {
   const readOut = h("div", { class: "read-out", "aria-hidden": "true" });
   let sent_ms = 0;
   let timer: number | undefined;
-  const lines = new Map<ScenarioName, Line2>();
+  const lines: Line2[] = [];
   const people = new Map<string, HTMLElement>();
 
   const place = (): void => {
@@ -56,14 +57,14 @@ export function marks(twin: Twin, stage: Stage, layers: ShownLayers): HTMLElemen
     place();
   });
 
-  watchAll([twin.probes, twin.section, twin.shown, stage.sinkings], () => {
-    for (const line of lines.values()) disposeLine(line);
-    lines.clear();
-    for (const [name, view] of stage.views) {
+  watchAll([twin.probes, twin.section, twin.measured, twin.shown, stage.sinkings], () => {
+    for (const line of lines.splice(0)) disposeLine(line);
+    for (const view of stage.views.values()) {
       view.extraLabels = twin.probes.value.map((probe, i) => ({ at: view.relief.local(probe.at[0], probe.at[1], 0.2), text: String(i + 1), kind: "probe", colour: probe.colour, priority: 9 }));
-      if (twin.section.value) {
-        const line = pixelLine(view.relief.drape(twin.section.value, 0.4), { colour: "#8a4a8f", width_px: 2.5, onTop: true });
-        lines.set(name, line);
+      for (const [points, colour] of [[twin.section.value, sectionColour], [twin.measured.value, measureColour]] as const) {
+        if (!points) continue;
+        const line = pixelLine(view.relief.drape(points, 0.4), { colour, width_px: 2.5, onTop: true });
+        lines.push(line);
         view.overlay.add(line);
       }
       stage.relabel(view);

@@ -2,7 +2,7 @@
 import type { FlowPath, Point } from "../protocol/messages";
 import type { Relief } from "../scene/relief";
 import { fixed, quantity } from "./format";
-import { inside, length } from "./shapes";
+import { area, crossesItself, inside, length, releaseVolume } from "./shapes";
 
 /** Chainage of the nearest place on the path, and how far away that is, m. */
 export function chainageAt(path: FlowPath, [x, y]: Point): { chainage_m: number; off_m: number } {
@@ -38,6 +38,43 @@ const slope_deg = (relief: Relief, [x, y]: Point): number => {
   const step = relief.grid.cell;
   return (Math.atan(Math.hypot(relief.at(x + step, y) - relief.at(x - step, y), relief.at(x, y + step) - relief.at(x, y - step)) / (2 * step)) * 180) / Math.PI;
 };
+
+export interface LineMeasures {
+  /** In plan, and over the ground, m. */
+  plan_m: number;
+  ground_m: number;
+  /** From the first to the last point; negative: downhill. Lowest and highest ground on the way, m. */
+  rise_m: number;
+  lowest_m: number;
+  highest_m: number;
+  /** From end to end, and of the steepest part between two places a cell apart, both along the line. */
+  slope_deg: number;
+  steepest_deg: number;
+}
+/** Of a line of two points or more on the ground. */
+export function lineMeasures(line: readonly Point[], relief: Relief): LineMeasures {
+  const places = along(line, relief.grid.cell);
+  const heights = places.map(([x, y]) => relief.at(x, y));
+  const degrees = (rise: number, run: number): number => (Math.atan2(Math.abs(rise), run) * 180) / Math.PI;
+  let ground_m = 0;
+  let steepest_deg = 0;
+  for (let k = 1; k < places.length; ++k) {
+    const run = Math.hypot(places[k][0] - places[k - 1][0], places[k][1] - places[k - 1][1]);
+    const rise = heights[k] - heights[k - 1];
+    if (run === 0) continue;
+    ground_m += Math.hypot(run, rise);
+    steepest_deg = Math.max(steepest_deg, degrees(rise, run));
+  }
+  const plan_m = length(line);
+  const rise_m = heights[heights.length - 1] - heights[0];
+  return { plan_m, ground_m, rise_m, lowest_m: Math.min(...heights), highest_m: Math.max(...heights), slope_deg: plan_m > 0 ? degrees(rise_m, plan_m) : 0, steepest_deg };
+}
+/** Area inside an outline, in plan and over the ground, m2; null: no outline, or it crosses itself. */
+export function areaMeasures(outline: readonly Point[], relief: Relief): { plan_m2: number; ground_m2: number } | null {
+  if (outline.length < 3 || crossesItself(outline)) return null;
+  // A release of 1 m thickness normal to the slope has the volume of the area over the ground.
+  return { plan_m2: area(outline), ground_m2: releaseVolume(outline, 1, relief) };
+}
 
 /** Places along a line, at most a cell apart. */
 function along(line: readonly Point[], step: number): Point[] {
