@@ -20,13 +20,16 @@ import { Picture } from "./panels/picture";
 import { balance, runCard } from "./panels/run_card";
 import { changedOnTheWay } from "./panels/scenarios";
 import { sessionButton } from "./panels/session";
+import { swipeDivider } from "./panels/swipe";
 import { transport } from "./panels/transport";
 import { viewBar } from "./panels/view_bar";
 import type { Api } from "./protocol/api";
 import type { Grid } from "./protocol/grid";
 import type { SceneInfo } from "./protocol/messages";
 import type { StartPage } from "./protocol/start";
+import { takeLinkedView } from "./protocol/token";
 import { Drawing } from "./scene/drawing";
+import { isDepthAveragedLayer, isEnsembleLayer } from "./scene/layers";
 import { marks } from "./scene/marks";
 import { Relief } from "./scene/relief";
 import { placeOnPath } from "./scene/scenario_view";
@@ -39,6 +42,7 @@ import { takeFormer, whatIsGone, type FormerSession } from "./state/former_sessi
 import { Playback } from "./state/playback";
 import { Refresher } from "./state/refresher";
 import { Twin } from "./state/twin";
+import { viewOf, viewText, type LinkedView } from "./state/view_link";
 import { dialog, openDialog } from "./ui/dialog";
 import { button, h } from "./ui/dom";
 import { sheetHandle } from "./ui/sheet";
@@ -145,7 +149,7 @@ function buildPage(page: HTMLElement, twin: Twin): void {
   const scale = scaleAndCompass(twin, stage, readOut);
   stage.covers = [bar.camera, bar.show, scale];
   // Legends stand below the picture: over it they would hide debris and houses.
-  const middle = h("main", { class: "middle" }, triggerBanner(twin), h("div", { class: "view" }, stage.element, bar.camera, bar.show, measuring(twin, stage, drawing), scale), key);
+  const middle = h("main", { class: "middle" }, triggerBanner(twin), h("div", { class: "view" }, stage.element, bar.camera, bar.show, swipeDivider(twin, stage), measuring(twin, stage, drawing), scale), key);
   // Names of the two views stand below the bars, which wrap on a narrow page, and so does the ground in a plan. On a phone only the camera's is there.
   const bars = new ResizeObserver(() => {
     const below = bar.show.offsetHeight > 0 ? bar.show.offsetTop + bar.show.offsetHeight : bar.camera.offsetTop + bar.camera.offsetHeight;
@@ -155,7 +159,7 @@ function buildPage(page: HTMLElement, twin: Twin): void {
   for (const element of [bar.show, stage.element]) bars.observe(element);
   page.replaceChildren(
     h("header", { class: "topbar" }, setup, wordmark, h("h1", {}, twin.scene.title), badge, h("span", { class: "spring" }),
-      people(twin), sessionButton(twin), ...exportButtons(twin, stage, picture), button("Help", { icon: "help", bare: true, class: "bare help", title: "Help and shortcuts (?)", onclick: help }), drawer),
+      people(twin, () => presentView(twin, stage)), sessionButton(twin), ...exportButtons(twin, stage, picture), button("Help", { icon: "help", bare: true, class: "bare help", title: "Help and shortcuts (?)", onclick: help }), drawer),
     alarmBanner(twin),
     controls(twin, drawing),
     middle,
@@ -163,6 +167,26 @@ function buildPage(page: HTMLElement, twin: Twin): void {
     transport(twin, playback),
     toasts.polite, toasts.urgent,
   );
+  const linked = viewOf(takeLinkedView() ?? "");
+  if (linked) openView(twin, stage, linked);
+}
+
+function presentView(twin: Twin, stage: Stage): string {
+  const layer = twin.layer.value;
+  return viewText({ camera: stage.rig.viewpoint, layer: layer === "none" || isEnsembleLayer(layer) || isDepthAveragedLayer(layer) ? "none" : layer,
+    shown: twin.shown.value, divider: twin.shown.value.length > 1 ? twin.divider.value : null });
+}
+/** What a link asked for: the camera at once, scenarios as soon as they are known. */
+function openView(twin: Twin, stage: Stage, view: LinkedView): void {
+  stage.beginAt(view.camera);
+  twin.layer.value = view.layer;
+  let shown = false;
+  watchAll([twin.you, twin.scenarios], () => {
+    if (shown || twin.you.value === null || !view.shown.every((name) => twin.scenarios.value.includes(name))) return;
+    shown = true;
+    twin.show(view.shown, view.shown[0]);
+    twin.divider.value = view.divider;
+  });
 }
 
 /** Setups and impacts go to the views. */

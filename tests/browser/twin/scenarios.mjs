@@ -1,7 +1,7 @@
 // Scenarios: runs with parameters from time 0. What is asked before a run is changed on the way, what is marked, and what Compare acts on.
 import { readFileSync } from "node:fs";
 import { join } from "node:path";
-import { assert, clickGround, inControl, pause, saved, until } from "./harness.mjs";
+import { assert, boxOf, clickGround, inControl, pause, saved, until, viewClip } from "./harness.mjs";
 
 const key = "material.friction_coefficient";
 
@@ -94,6 +94,42 @@ export async function testScenarios(run) {
     await until(() => page.locator(".pane-map").allTextContents(), (t) => t.join("|") === "Map: B − A; debris of A|Map: B − A; debris of B", "the difference named in both views");
     await run.shot(page, "39-difference");
     await page.selectOption("select[aria-label^='Map layer']", "none");
+  });
+
+  await run.check("both in one picture, with a divider that is dragged or moved by keys", async () => {
+    const clip = await viewClip(page);
+    const beside = await run.still(page, clip);
+    await page.click("[aria-label='Swipe']");
+    const divider = page.locator(".divider");
+    const box = await boxOf(divider);
+    const view = await boxOf(page.locator(".stage canvas"));
+    await page.mouse.move(box.x + box.width / 2, box.y + 40);
+    await page.mouse.down();
+    await page.mouse.move(view.x + 0.3 * view.width, box.y + 40, { steps: 4 });
+    await page.mouse.up();
+    assert.equal(await divider.getAttribute("aria-valuenow"), "30");
+    await run.shot(page, "39-swipe");
+    await page.click("[aria-label='Share']");
+    await page.locator("label:has-text('Links open this view') input").check();
+    const link = await page.inputValue("[aria-label='Link for viewers']");
+    await page.keyboard.press("Escape");
+    const other = await page.context().newPage();
+    await other.goto(link);
+    await other.locator(".divider").waitFor();
+    assert.equal(await other.locator(".divider").getAttribute("aria-valuenow"), "30", "the view of the link");
+    const names = JSON.stringify(await page.locator(".pane-name").allTextContents());
+    await until(() => other.locator(".pane-name").allTextContents(), (t) => JSON.stringify(t) === names, "the scenarios of the link");
+    await other.close();
+    await divider.focus();
+    await page.keyboard.press("End");
+    const first = await run.still(page, clip);
+    await page.keyboard.press("Home");
+    const second = await run.still(page, clip);
+    assert.equal(await divider.getAttribute("aria-valuenow"), "2");
+    assert.notEqual(first.hash, second.hash, "A and B look alike");
+    await page.click("[aria-label='Swipe']");
+    await divider.waitFor({ state: "hidden" });
+    await run.back(page, clip, beside, "two views side by side");
   });
 
   await run.check("two scenarios in numbers: figures, houses, barriers with differences, both curves, a report on one page", async () => {

@@ -19,8 +19,9 @@ function chip(person: Person, twin: Twin): HTMLElement {
   return element;
 }
 
-export function people(twin: Twin): HTMLElement {
-  const chips = h("button", { type: "button", class: "chips quiet", onclick: () => share(twin) });
+/** view: the present one, for a link. */
+export function people(twin: Twin, view: () => string): HTMLElement {
+  const chips = h("button", { type: "button", class: "chips quiet", onclick: () => share(twin, view()) });
   const control = button("Take control", { class: "control", onclick: () => void ask() });
   const connection = h("div", { class: "connection", role: "status" });
   const request = h("div", { class: "request", role: "alertdialog", "aria-label": "Request for control" });
@@ -58,10 +59,10 @@ export function people(twin: Twin): HTMLElement {
     request.hidden = !asked;
   });
   return h("div", { class: "people" }, connection, request, control, chips,
-    button("Share", { icon: "share", "aria-label": "Share", title: "Share this session", onclick: () => share(twin) }));
+    button("Share", { icon: "share", "aria-label": "Share", title: "Share this session", onclick: () => share(twin, view()) }));
 }
 
-function share(twin: Twin): void {
+function share(twin: Twin, view: string): void {
   const name = h("input", { type: "text", maxlength: 40, value: twin.you.value?.name ?? "", "aria-label": "Your name", onchange: () => {
     if (name.value.trim() !== "") twin.rename(name.value.trim());
   } });
@@ -70,19 +71,23 @@ function share(twin: Twin): void {
     list.replaceChildren(...twin.people.value.map((p) => h("li", {}, chip(p, twin), h("span", { class: "grow" }, p.name, p.id === twin.you.value?.id ? " (you)" : ""),
       h("span", { class: "muted" }, twin.controller.value === p.id ? "has control" : p.role === "viewer" ? "viewer" : "may ask for control"))));
   });
+  const withView = h("input", { type: "checkbox" });
   const link = (title: string, note: string, token: string | undefined): HTMLElement | null => {
     if (token === undefined) return null;
-    const text = linkWith(token);
-    const field = h("input", { type: "text", readonly: true, value: text, "aria-label": title, onfocus: () => field.select() });
+    const text = (): string => linkWith(token, withView.checked ? view : "");
+    const field = h("input", { type: "text", readonly: true, value: text(), "aria-label": title, onfocus: () => field.select() });
+    withView.addEventListener("change", () => (field.value = text()));
     return h("div", { class: "link" }, h("h3", {}, title), h("p", { class: "hint" }, note), h("div", { class: "row" }, field, button("Copy", { onclick: () => {
       field.select();
-      navigator.clipboard.writeText(text).then(() => twin.notice(`${title} copied`, "done"), () => twin.notice("Copy the marked link with Ctrl+C.", "done"));
+      navigator.clipboard.writeText(text()).then(() => twin.notice(`${title} copied`, "done"), () => twin.notice("Copy the marked link with Ctrl+C.", "done"));
     } })));
   };
   const links = twin.links.value;
   const box = dialog("Share this session", h("label", { class: "row own-name" }, "Your name", name), list,
     link("Link for viewers", "They can see everything but change nothing.", links.viewer),
     link("Link for controllers", "They can ask for control and then change the simulation.", links.controller),
+    links.viewer === undefined && links.controller === undefined ? null
+      : h("label", { class: "check", title: "Camera, map layer and scenarios as they are on this page now" }, withView, "Links open this view"),
     links.viewer === undefined && links.controller === undefined ? h("p", { class: "hint" }, "The program printed the links when it started.") : null,
     location.hostname === "127.0.0.1" || location.hostname === "localhost"
       ? h("p", { class: "hint" }, "These links work in browsers on this computer.") : null,

@@ -51,6 +51,10 @@ export class Picture {
     const title = twin.scene.title;
     const [first, second] = stage.stacked ? ["above", "below"] : ["left", "right"];
     const two = stage.views.size > 1;
+    if (stage.divider !== null) {
+      c.fillStyle = "#fff";
+      c.fillRect(stage.divider * width - 1, 0, 2, height - strip.height);
+    }
     const times = two ? twin.shown.value.map((name, i) => `${name} ${i === 0 ? first : second}: t = ${fixed(stage.timeOf(name), 1)} s`) : [`t = ${fixed(stage.stats.shownTime_s, 1)} s`];
     const time = [...times, ...(this.layers.isDifference ? [`map in both: ${twin.differenceName}`] : [])].join("   ");
     const changed = twin.shown.value.filter((name) => changesText(twin.cells[name].setup.value))

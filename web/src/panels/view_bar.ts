@@ -9,6 +9,7 @@ import { button, h, type IconName } from "../ui/dom";
 import { depthAveragedOptions, depthAveragedSwitch } from "./depth_averaged";
 import { measureButton } from "./measuring";
 import { momentOf, textOf } from "../scene/natural/sun";
+import { swipeButton } from "./swipe";
 
 const savedKey = "talus-views";
 
@@ -118,7 +119,7 @@ export function viewBar(twin: Twin, stage: Stage): ViewBar {
   const open = button("Display options", { icon: "layers", bare: true, class: "bare options-switch", title: "Particles, layers, names", "aria-expanded": "false", onclick: () =>
     open.setAttribute("aria-expanded", String(show.classList.toggle("open"))) });
   const camera = h("div", { class: "bar camera", role: "toolbar", "aria-label": "Camera" }, ...buttons,
-    button("Fit", { icon: "fit", bare: true, title: "Whole scene (F)", onclick: () => stage.rig.fit() }), measureButton(twin), save, saved, open);
+    button("Fit", { icon: "fit", bare: true, title: "Whole scene (F)", onclick: () => stage.rig.fit() }), measureButton(twin), swipeButton(twin), save, saved, open);
   const show = h("div", { class: "bar show", role: "toolbar", "aria-label": "Display options" },
     h("label", { class: "check", title: "Debris and ground as they would look, or by colours of a legend (N)" }, natural, "Natural"), sun, particlesLabel, surface, layer, opacity, depthAveragedSwitch(twin), differenceLabel,
     photoLabel, contoursLabel, h("label", { class: "check" }, names, "Names"));

@@ -13,7 +13,7 @@ import { Daylight } from "./natural/daylight";
 import { hillShade } from "./natural/hill_shade";
 import type { Relief } from "./relief";
 import { Resolution } from "./resolution";
-import { Rig } from "./rig";
+import { Rig, type Viewpoint } from "./rig";
 import { ScenarioView } from "./scenario_view";
 
 /** Performance figures for tests and users: window.talusStats. */
@@ -86,6 +86,7 @@ export class Stage {
   private width = 1;
   private height = 1;
   private fitted = false;
+  private swiped = false;
 
   constructor(readonly twin: Twin, readonly relief: Relief) {
     this.stats = { frames: 0, script_ms: 0, draw_ms: 0, decode_ms: 0, unfold_ms: 0, upload_ms: 0, particles: 0, drawCalls: 0, detail: 2, shownTime_s: 0, pixelRatio: 1, sunk_m: {},
@@ -110,6 +111,7 @@ export class Stage {
     }).observe(this.element);
     watchAll(twin.every("state"), () => (this.fastest_mps.value = speedScale_mps(twin.every("state").map((cell) => cell.value))));
     twin.shown.watch((names) => this.arrange(names));
+    twin.divider.watch(() => this.divide());
     watchAll([twin.look, twin.layer, twin.surface, twin.shown], () => this.shine());
     twin.moment.watch((moment) => {
       if (moment === this.daylight.moment) return;
@@ -124,6 +126,11 @@ export class Stage {
 
   invalidate(): void {
     this.due = true;
+  }
+  /** The first picture is of that view. */
+  beginAt(view: Viewpoint): void {
+    this.fitted = true;
+    this.rig.go(view, false);
   }
   /** Called after every picture. */
   onPicture(reader: () => void): void {
@@ -190,7 +197,16 @@ export class Stage {
     }
     this.drawn = [...this.views.values()];
     this.element.classList.toggle("two", names.length > 1);
+    this.divide();
     this.resize();
+  }
+  private divide(): void {
+    const { divider } = this;
+    this.element.style.setProperty("--divider", `${100 * (divider ?? 0.5)}%`);
+    // A picture of another shape; where the divider only moves, nothing else changes.
+    if (this.element.classList.toggle("swipe", divider !== null) !== this.swiped) this.resize();
+    this.swiped = divider !== null;
+    this.invalidate();
   }
   private push(frame: Frame): void {
     const begun = performance.now();
@@ -218,17 +234,21 @@ export class Stage {
     this.invalidate();
   }
 
+  /** Where two views of the whole stage meet, as a share of its width; null: views do not overlap. */
+  get divider(): number | null {
+    return this.views.size > 1 ? this.twin.divider.value : null;
+  }
   /** Whether views stand above one another: where the stage is higher than wide, as on a phone. */
   get stacked(): boolean {
-    return this.views.size > 1 && this.width < this.height;
+    return this.views.size > 1 && this.width < this.height && this.divider === null;
   }
   /** Place of the k-th view in pixels of the stage, from its top left. The next call changes it. */
   private part(k: number): Readonly<Stage["place"]> {
-    const count = Math.max(1, this.views.size);
+    const count = this.divider === null ? Math.max(1, this.views.size) : 1;
     const { place, stacked, width, height } = this;
     place.wide = stacked ? width : width / count;
     place.high = stacked ? height / count : height;
-    place.left = stacked ? 0 : k * place.wide;
+    place.left = stacked || count === 1 ? 0 : k * place.wide;
     place.top = stacked ? k * place.high : 0;
     return place;
   }
@@ -276,7 +296,10 @@ export class Stage {
       if (view.update(now, camera, pixels, this.fastest_mps.value)) more = true;
       if (this.cameraMoved || !view.labels.placed) view.labels.place(this.rig, wide, high, this.covered(left, top));
       this.renderer.setViewport(left, bottom, wide, high);
-      this.renderer.setScissor(left, bottom, wide, high);
+      // Of two views of the whole stage each is drawn on its side of the divider.
+      const cut = this.divider === null ? 0 : Math.round(this.divider * wide);
+      if (this.divider === null) this.renderer.setScissor(left, bottom, wide, high);
+      else this.renderer.setScissor(k === 0 ? 0 : cut, bottom, k === 0 ? cut : wide - cut, high);
       if (view.shadowsDue) {
         this.renderer.shadowMap.needsUpdate = true;
         view.shadowsDue = false;
@@ -318,6 +341,7 @@ export class Stage {
     for (const [k, name] of [...this.views.keys()].entries()) {
       const { left, top, wide, high } = this.part(k);
       const [x, y] = [(clientX - box.left - left) / wide, (clientY - box.top - top) / high];
+      if (this.divider !== null && (x < this.divider) !== (k === 0)) continue;
       if (x >= 0 && x < 1 && y >= 0 && y <= 1) return { name, x: 2 * x - 1, y: 1 - 2 * y };
     }
     return null;

@@ -53,6 +53,8 @@ export class Twin {
   readonly scenarios = new Cell<ScenarioName[]>(["A"]);
   /** One, or two side by side, in the order of their names. */
   readonly shown = new Cell<ScenarioName[]>(["A"]);
+  /** Where two that are shown meet in one picture, as a share of its width; null: they stand side by side. */
+  readonly divider = new Cell<number | null>(null);
   /** One of those shown, which the controls change. */
   readonly edited = new Cell<ScenarioName>("A");
   readonly cells = Object.fromEntries(scenarioNames.map((name) => [name, emptyCells()])) as Record<ScenarioName, ScenarioCells>;
