@@ -80,12 +80,12 @@ export class Stage {
   private readonly speedRamp = rampTextureOf(ramps.speed);
   private readonly readers: (() => void)[] = [];
   private readonly cameraReaders: (() => void)[] = [];
+  private readonly sizeReaders: (() => void)[] = [];
   private due = true;
   private cameraMoved = true;
   private readonly resolution = new Resolution();
   private width = 1;
   private height = 1;
-  private fitted = false;
 
   constructor(readonly twin: Twin, readonly relief: Relief) {
     this.stats = { frames: 0, script_ms: 0, draw_ms: 0, decode_ms: 0, unfold_ms: 0, upload_ms: 0, particles: 0, drawCalls: 0, detail: 2, shownTime_s: 0, pixelRatio: 1, sunk_m: {},
@@ -128,6 +128,9 @@ export class Stage {
   /** Called after every picture. */
   onPicture(reader: () => void): void {
     this.readers.push(reader);
+  }
+  onSize(reader: () => void): void {
+    this.sizeReaders.push(reader);
   }
   onCamera(reader: () => void): void {
     this.cameraReaders.push(reader);
@@ -209,11 +212,7 @@ export class Stage {
     const part = this.part(0);
     this.element.classList.toggle("stacked", this.stacked);
     this.rig.aspect = part.wide / part.high;
-    // A view that is higher than wide, as on a phone, would cut off the sides.
-    if (!this.fitted && this.element.clientWidth > 0) {
-      this.fitted = true;
-      if (this.width < this.height) this.rig.fit(false);
-    }
+    if (this.element.clientWidth > 0) for (const reader of this.sizeReaders) reader();
     this.cameraMoved = true;
     this.invalidate();
   }
