@@ -30,7 +30,7 @@ bool runs(long process) {
     return file >> number >> name >> state && state != "Z";
 }
 
-TEST(ChildProcess, its_lines_its_last_words_and_its_exit_code_are_told) {
+TEST(ChildProcess, its_lines_the_end_of_its_stderr_and_its_exit_code_are_told) {
     std::vector<std::string> lines;
     ChildProcess child = shell("pwd; echo second; echo 'what is wrong' >&2; exit 3");
     child.folder = "/";

@@ -10,6 +10,7 @@ import { ComparePanel } from "./panels/compare";
 import { DepthAveragedPanel } from "./panels/depth_averaged";
 import { exportButtons } from "./panels/exports";
 import { impactColour, impactsPanel, largestPressure } from "./panels/impacts";
+import { followButton } from "./panels/follow_button";
 import { help, keys } from "./panels/keys";
 import { legends, scaleAndCompass } from "./panels/legends";
 import { measuring } from "./panels/measuring";
@@ -29,10 +30,10 @@ import type { SceneInfo } from "./protocol/messages";
 import type { StartPage } from "./protocol/start";
 import { takeLinkedView } from "./protocol/token";
 import { Drawing } from "./scene/drawing";
+import { Follow } from "./scene/follow";
 import { isDepthAveragedLayer, isEnsembleLayer } from "./scene/layers";
 import { marks } from "./scene/marks";
 import { Relief } from "./scene/relief";
-import { placeOnPath } from "./scene/scenario_view";
 import { ShownLayers } from "./scene/shown_layers";
 import { Sinking } from "./scene/sinking";
 import { Trails } from "./scene/natural/trails";
@@ -85,7 +86,7 @@ function buildPage(page: HTMLElement, twin: Twin): void {
   twin.onNotice((sentence, kind) => toasts.show(sentence, kind));
   showSetups(twin, stage);
   paneNames(twin, stage, layers);
-  followFront(twin, stage);
+  const follow = new Follow(twin, stage);
 
   const probes = new Probes(twin);
   const compare = new ComparePanel(twin, picture);
@@ -149,12 +150,13 @@ function buildPage(page: HTMLElement, twin: Twin): void {
   const scale = scaleAndCompass(twin, stage, readOut);
   stage.covers = [bar.camera, bar.show, scale];
   // Legends stand below the picture: over it they would hide debris and houses.
-  const middle = h("main", { class: "middle" }, triggerBanner(twin), h("div", { class: "view" }, stage.element, bar.camera, bar.show, swipeDivider(twin, stage), measuring(twin, stage, drawing), scale), key);
+  const middle = h("main", { class: "middle" }, triggerBanner(twin), h("div", { class: "view" }, stage.element, bar.camera, bar.show, swipeDivider(twin, stage), measuring(twin, stage, drawing), scale, followButton(twin, stage, follow)), key);
   // Names of the two views stand below the bars, which wrap on a narrow page, and so does the ground in a plan. On a phone only the camera's is there.
   const bars = new ResizeObserver(() => {
     const below = bar.show.offsetHeight > 0 ? bar.show.offsetTop + bar.show.offsetHeight : bar.camera.offsetTop + bar.camera.offsetHeight;
     middle.style.setProperty("--bars", `${bar.show.offsetTop + bar.show.offsetHeight}px`);
     stage.rig.covered = Math.min(0.4, below / Math.max(1, stage.element.clientHeight));
+    follow.refresh();
   });
   for (const element of [bar.show, stage.element]) bars.observe(element);
   page.replaceChildren(
@@ -214,15 +216,5 @@ function showSetups(twin: Twin, stage: Stage): void {
       view.selected = twin.hindrance === null ? (twin.selection.value?.id ?? null) : null;
       stage.relabel(view);
     }
-  });
-}
-
-function followFront(twin: Twin, stage: Stage): void {
-  stage.onPicture(() => {
-    if (stage.rig.mode !== "follow") return;
-    const chainage = twin.shownState()?.front_chainage_m;
-    if (chainage === null || chainage === undefined) return;
-    const place = placeOnPath(twin.scene, chainage);
-    if (place) stage.rig.follow(twin.relief.local(place.at[0], place.at[1]));
   });
 }

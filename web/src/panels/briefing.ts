@@ -72,7 +72,7 @@ class Briefing {
     const first = times_s[0] ?? 0;
     const last = times_s[times_s.length - 1] ?? 0;
     const moments = course(first, endOfFlow(series, last), speed, overviews);
-    const before = { view: stage.rig.viewpoint, replay: twin.replay_s.value };
+    const before = { view: stage.rig.viewpoint, following: stage.rig.mode === "follow", replay: twin.replay_s.value };
     const pictures: Encoded[] = [];
     let failure: Error | null = null;
     const encoder = new VideoEncoder({
@@ -114,6 +114,7 @@ class Briefing {
       stage.filming = false;
       for (const view of stage.views.values()) view.clock.hold = null;
       stage.rig.go(before.view, false);
+      if (before.following) stage.rig.setMode("follow");
       twin.replay_s.value = before.replay;
       if (before.replay === null) twin.askForFrames();
       else await this.show(times_s, before.replay, -1);

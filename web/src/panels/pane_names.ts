@@ -10,6 +10,15 @@ import { h } from "../ui/dom";
 
 export function paneNames(twin: Twin, stage: Stage, layers: ShownLayers): void {
   const times = new Map<ScenarioName, { element: HTMLElement; tenths: number }>();
+  // Written only where a tenth of a second has passed: a picture makes no text.
+  const put = (): void => {
+    for (const [name, time] of times) {
+      const tenths = Math.round(10 * (stage.timeOf(name) ?? NaN));
+      if (Object.is(tenths, time.tenths)) continue;
+      time.tenths = tenths;
+      time.element.textContent = Number.isNaN(tenths) ? "" : `, ${fixed(tenths / 10, 1)}\u202fs`;
+    }
+  };
   watchAll([twin.shown, twin.edited, twin.layer, twin.difference, ...twin.every("setup")], () => {
     times.clear();
     for (const name of twin.shown.value) {
@@ -23,14 +32,5 @@ export function paneNames(twin: Twin, stage: Stage, layers: ShownLayers): void {
     }
     put();
   });
-  // Written only where a tenth of a second has passed: a picture makes no text.
-  const put = (): void => {
-    for (const [name, time] of times) {
-      const tenths = Math.round(10 * (stage.timeOf(name) ?? NaN));
-      if (Object.is(tenths, time.tenths)) continue;
-      time.tenths = tenths;
-      time.element.textContent = Number.isNaN(tenths) ? "" : `, ${fixed(tenths / 10, 1)}\u202fs`;
-    }
-  };
   stage.onPicture(put);
 }

@@ -31,8 +31,7 @@ export function viewBar(twin: Twin, stage: Stage): ViewBar {
   };
 
   const press = (mode: CameraMode): void => modes.forEach(([name], i) => buttons[i].setAttribute("aria-pressed", String(name === mode)));
-  stage.rig.onMode = press;
-  press(stage.rig.mode);
+  stage.rig.watchMode(press);
 
   const views = (): Viewpoint[] => JSON.parse(localStorage.getItem(savedKey + twin.scene.title) ?? "[]") as Viewpoint[];
   const saved = h("select", { "aria-label": "Saved views", class: "saved", onchange: () => {

@@ -11,6 +11,13 @@ export interface Viewpoint { position: Place; target: Place; plan_m?: number }
 /** Of a view of a house, above the horizon. */
 const visitTilt = (35 * Math.PI) / 180;
 
+/** Less is a click of a hand that is not quite still, px. */
+const dragged_px = 5;
+/** How hard a camera that follows is drawn to its place, 1/s: it comes to rest in some three seconds, without overshooting. */
+const pull_hz = 1.3;
+/** No opening view is nearer. */
+const nearest_m = 60;
+
 const flyKeys = new Set(["KeyW", "KeyA", "KeyS", "KeyD", "KeyQ", "KeyE"]);
 
 export class Rig {
@@ -18,14 +25,19 @@ export class Rig {
   mode: CameraMode = "orbit";
   /** Share of the view's height, from its top, that bars cover. */
   covered = 0;
-  /** Called when the mode changes by itself, as by a saved view. */
-  onMode: (mode: CameraMode) => void = () => {};
+  /** Nobody has moved it yet. */
+  untouched = true;
+  /** Where motion on screens makes people ill, the camera moves in cuts, and never by itself. */
+  readonly still = matchMedia("(prefers-reduced-motion: reduce)").matches;
   private readonly perspective = new PerspectiveCamera(38, 1, 0.5, 20000);
   /** Its zoom is 1 / (metres from the lower to the upper edge). */
   private readonly flat = new OrthographicCamera(-0.5, 0.5, 0.5, -0.5);
   private readonly held = new Set<string>();
   private flight: { from: Viewpoint; to: Viewpoint; begun_ms: number; lasts_ms: number } | null = null;
-  private followed: Vector3 | null = null;
+  /** Where it is to be while it follows, and how fast its place and its target move, m/s. */
+  private wanted: Viewpoint | null = null;
+  private readonly drift = { position: new Vector3(), target: new Vector3() };
+  private readonly modeReaders: ((mode: CameraMode) => void)[] = [];
   /** What the perspective looked at before the plan. */
   private readonly before = new Vector3();
   private last_ms = 0;
@@ -39,7 +51,7 @@ export class Rig {
     };
     for (const camera of [this.perspective, this.flat]) camera.up.set(0, 0, 1);
     this.controls = new OrbitControls(this.perspective, canvas);
-    this.controls.enableDamping = !matchMedia("(prefers-reduced-motion: reduce)").matches;
+    this.controls.enableDamping = !this.still;
     this.controls.dampingFactor = 0.14;
     this.controls.zoomToCursor = true;
     this.controls.maxPolarAngle = 0.49 * Math.PI;
@@ -53,6 +65,14 @@ export class Rig {
     canvas.addEventListener("keydown", (event) => this.key(event));
     canvas.addEventListener("keyup", (event) => void this.held.delete(event.code));
     canvas.addEventListener("blur", () => this.held.clear());
+    canvas.addEventListener("wheel", () => this.touch(), { passive: true });
+    // A click on a house is no movement; a drag is.
+    let pressed: PointerEvent | null = null;
+    canvas.addEventListener("pointerdown", (event) => (pressed = event));
+    canvas.addEventListener("pointermove", (event) => {
+      if (pressed && event.buttons > 0 && Math.hypot(event.clientX - pressed.clientX, event.clientY - pressed.clientY) > dragged_px) this.touch();
+    });
+    for (const end of ["pointerup", "pointercancel"]) canvas.addEventListener(end, () => (pressed = null));
     const reach = 2.2 * (relief.width + relief.height);
     this.perspective.far = this.flat.far = 12 * reach;
     this.flat.near = -this.flat.far;
@@ -61,6 +81,9 @@ export class Rig {
 
   get camera(): PerspectiveCamera | OrthographicCamera {
     return this.mode === "plan" ? this.flat : this.perspective;
+  }
+  get aspect(): number {
+    return this.perspective.aspect;
   }
   set aspect(ratio: number) {
     this.perspective.aspect = ratio;
@@ -98,6 +121,16 @@ export class Rig {
   private get halfTangent(): number {
     return Math.tan((this.perspective.fov * Math.PI) / 360);
   }
+  /** Calls `reader` now and whenever the mode changes, also by itself, as by a saved view. */
+  watchMode(reader: (mode: CameraMode) => void): void {
+    this.modeReaders.push(reader);
+    reader(this.mode);
+  }
+  /** Somebody moves the camera, or works on what it shows: it follows no longer. */
+  touch(): void {
+    this.untouched = false;
+    if (this.mode === "follow") this.setMode("orbit");
+  }
   /** The whole ground in view, seen from its lower side. */
   fit(animated = true, towards = 0.15): void {
     const [x, y] = this.relief.middle;
@@ -112,7 +145,8 @@ export class Rig {
       target.y + Math.sin(angle) * Math.hypot(offset.x, offset.z),
       target.z + offset.y,
     ];
-    this.go({ position, target: target.toArray() }, animated);
+    if (animated) this.go({ position, target: target.toArray() }, true);
+    else this.put({ position, target: target.toArray() });
   }
   /** Angle of the overall downhill direction, from east. */
   get downhill(): number {
@@ -164,26 +198,33 @@ export class Rig {
     this.go({ position, target: place }, true);
   }
   go(to: Viewpoint, animated: boolean): void {
+    this.untouched = false;
     if (to.plan_m !== undefined) return this.plan(to.target, to.plan_m);
-    if (this.mode === "plan") this.setMode("orbit");
-    if (!animated || matchMedia("(prefers-reduced-motion: reduce)").matches) {
-      this.flight = null;
-      this.camera.position.set(...to.position);
-      this.controls.target.set(...to.target);
-      this.controls.update();
-      this.changed();
-      return;
-    }
+    if (this.mode === "plan" || this.mode === "follow") this.setMode("orbit");
+    if (!animated || this.still) return this.put(to);
     this.flight = { from: this.viewpoint, to, begun_ms: performance.now(), lasts_ms: 700 };
+    this.changed();
+  }
+  /** There at once. */
+  put(to: Viewpoint): void {
+    this.flight = null;
+    this.drift.position.set(0, 0, 0);
+    this.drift.target.set(0, 0, 0);
+    this.perspective.position.set(...to.position);
+    this.controls.target.set(...to.target);
+    this.controls.update();
     this.changed();
   }
   setMode(mode: CameraMode): void {
     if (this.mode === "fly") this.setPivot(false);
     if ((mode === "plan") !== (this.mode === "plan")) this.flatten(mode === "plan");
     this.mode = mode;
+    if (mode !== "follow") this.untouched = false;
     if (mode === "fly") this.setPivot(true);
-    this.onMode(mode);
-    this.followed = null;
+    this.wanted = null;
+    this.drift.position.set(0, 0, 0);
+    this.drift.target.set(0, 0, 0);
+    for (const reader of this.modeReaders) reader(mode);
     this.held.clear();
     this.changed();
   }
@@ -211,13 +252,35 @@ export class Rig {
     controls.minDistance = close ? 0.5 : 4;
     controls.target.copy(camera.position).addScaledVector(ahead, close ? 1 : Math.max(5, distance));
   }
-  /** Local place of the front, for "follow". */
-  follow(place: Place | null): void {
-    if (this.mode !== "follow" || place === null) return;
-    if (this.followed === null) {
-      this.visit(place, Math.min(160, this.camera.position.distanceTo(this.controls.target)));
-      this.followed = new Vector3(...place);
-    } else this.followed.set(...place);
+  /** Where it is to be while it follows. It glides there; in cuts where motion is unwanted, once what it looks at nears the edge of the view. */
+  aim(to: Viewpoint): void {
+    if (this.mode !== "follow") return;
+    this.wanted = to;
+    if (this.still && this.controls.target.distanceTo(new Vector3(...to.target)) > 0.3 * this.visible_m) this.put(to);
+    this.changed();
+  }
+  /** The nearest view from a direction that has all places in it, below what covers its upper edge. */
+  frame(places: readonly Place[], heading: number, tilt: number): Viewpoint {
+    const away = new Vector3(Math.cos(heading) * Math.cos(tilt), Math.sin(heading) * Math.cos(tilt), Math.sin(tilt));
+    const right = new Vector3(-Math.sin(heading), Math.cos(heading), 0);
+    const up = new Vector3().crossVectors(away, right);
+    const tall = this.halfTangent, wide = tall * this.perspective.aspect;
+    const [lowest, highest] = [-0.86, 0.86 - 2 * this.covered];
+    const target = places.reduce((sum, p) => sum.add(new Vector3(...p)), new Vector3()).divideScalar(Math.max(1, places.length));
+    let distance = 2 * Math.max(...places.map((p) => target.distanceTo(new Vector3(...p))), nearest_m);
+    // What is nearer to the camera is larger: the extent in the picture depends on the distance, so that it is found step by step.
+    for (let k = 0; k < 24; ++k) {
+      let [left, farRight, low, high] = [Infinity, -Infinity, Infinity, -Infinity];
+      for (const place of places) {
+        const d = new Vector3(...place).sub(target);
+        const depth = Math.max(0.1 * distance, distance - d.dot(away));
+        const [x, y] = [d.dot(right) / depth / wide, d.dot(up) / depth / tall];
+        [left, farRight, low, high] = [Math.min(left, x), Math.max(farRight, x), Math.min(low, y), Math.max(high, y)];
+      }
+      target.addScaledVector(right, ((left + farRight) / 2) * wide * distance).addScaledVector(up, ((low + high) / 2 - (lowest + highest) / 2) * tall * distance);
+      distance = Math.max(nearest_m, distance * Math.max((farRight - left) / 1.72, (high - low) / (highest - lowest)));
+    }
+    return { position: target.clone().addScaledVector(away, distance).toArray(), target: target.toArray() };
   }
 
   private key(event: KeyboardEvent): void {
@@ -256,13 +319,16 @@ export class Rig {
     } else return;
     event.preventDefault();
     this.flight = null;
+    this.touch();
     this.controls.update();
     this.changed();
   }
 
   /** Moves the camera to `now`; true while it is still moving. */
   update(now_ms: number): boolean {
-    const seconds = Math.min(0.1, (now_ms - this.last_ms) / 1000);
+    const passed = (now_ms - this.last_ms) / 1000;
+    // One who flies on a slow computer must not shoot past; what glides is where it is due.
+    const seconds = Math.min(0.1, passed);
     this.last_ms = now_ms;
     let busy = false;
     if (this.flight) {
@@ -273,21 +339,18 @@ export class Rig {
       this.controls.target.set(...from.target).lerp(new Vector3(...to.target), eased);
       if (t >= 1) this.flight = null;
       busy = true;
-    } else if (this.followed) {
-      const gap = this.followed.clone().sub(this.controls.target);
-      if (gap.length() > 0.05) {
-        gap.multiplyScalar(1 - Math.exp(-2.2 * seconds));
-        this.controls.target.add(gap);
-        this.camera.position.add(gap);
-        busy = true;
-      }
-    }
+    } else if (this.wanted && !this.still) busy = this.glide(this.wanted, Math.min(1, passed));
     if (this.held.size > 0) {
       this.fly(seconds);
       busy = true;
     }
     // True while damping still moves the camera.
     return this.controls.update() || busy;
+  }
+  /** Both ends of the line of sight are drawn to their places as by damped springs: no jerk when the front changes its pace. False once there. */
+  private glide(to: Viewpoint, seconds: number): boolean {
+    const rest = spring(this.perspective.position, to.position, this.drift.position, seconds);
+    return spring(this.controls.target, to.target, this.drift.target, seconds) || rest;
   }
   private fly(seconds: number): void {
     const ahead = this.controls.target.clone().sub(this.camera.position);
@@ -310,4 +373,18 @@ export class Rig {
     const floor = this.relief.at(this.camera.position.x + ox, this.camera.position.y + oy) - oz + 1.7;
     if (this.camera.position.z < floor) this.camera.position.z = floor;
   }
+}
+
+/** Moves a place by critical damping, exactly for any duration; false once it is there. */
+function spring(at: Vector3, to: Place, speed: Vector3, seconds: number): boolean {
+  const fade = Math.exp(-pull_hz * seconds);
+  let moving = false;
+  for (const axis of ["x", "y", "z"] as const) {
+    const gap = at[axis] - to[axis === "x" ? 0 : axis === "y" ? 1 : 2];
+    const held = speed[axis] + pull_hz * gap;
+    if (Math.abs(gap) > 0.02 || Math.abs(speed[axis]) > 0.02) moving = true;
+    at[axis] += (gap + held * seconds) * fade - gap;
+    speed[axis] = (speed[axis] - pull_hz * held * seconds) * fade;
+  }
+  return moving;
 }

@@ -80,12 +80,12 @@ export class Stage {
   private readonly speedRamp = rampTextureOf(ramps.speed);
   private readonly readers: (() => void)[] = [];
   private readonly cameraReaders: (() => void)[] = [];
+  private readonly sizeReaders: (() => void)[] = [];
   private due = true;
   private cameraMoved = true;
   private readonly resolution = new Resolution();
   private width = 1;
   private height = 1;
-  private fitted = false;
   private swiped = false;
 
   constructor(readonly twin: Twin, readonly relief: Relief) {
@@ -129,12 +129,15 @@ export class Stage {
   }
   /** The first picture is of that view. */
   beginAt(view: Viewpoint): void {
-    this.fitted = true;
+    this.rig.touch();
     this.rig.go(view, false);
   }
   /** Called after every picture. */
   onPicture(reader: () => void): void {
     this.readers.push(reader);
+  }
+  onSize(reader: () => void): void {
+    this.sizeReaders.push(reader);
   }
   onCamera(reader: () => void): void {
     this.cameraReaders.push(reader);
@@ -225,11 +228,7 @@ export class Stage {
     const part = this.part(0);
     this.element.classList.toggle("stacked", this.stacked);
     this.rig.aspect = part.wide / part.high;
-    // A view that is higher than wide, as on a phone, would cut off the sides.
-    if (!this.fitted && this.element.clientWidth > 0) {
-      this.fitted = true;
-      if (this.width < this.height) this.rig.fit(false);
-    }
+    if (this.element.clientWidth > 0) for (const reader of this.sizeReaders) reader();
     this.cameraMoved = true;
     this.invalidate();
   }

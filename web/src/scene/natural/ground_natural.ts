@@ -11,8 +11,9 @@ const head = /* glsl */ `
     vec3 albedo;
     vec2 slope;   // of what is finer than the mesh
     float wet;
+    float mud;    // share of debris
   };
-  Surface natural = Surface(vec3(0.0), vec2(0.0), 0.0);
+  Surface natural = Surface(vec3(0.0), vec2(0.0), 0.0, 0.0);
   float naturalOpen = 1.0;
 
   // Noise of a size in metres: slope in xy, value (0 to 1) in z, distance to the nearest of scattered points in w.
@@ -50,7 +51,7 @@ const head = /* glsl */ `
     vec2 rough = 0.35 * fine.xy + 0.12 * grain.yx;
     float steep = 1.0 - n.z + 0.10 * (middle.z - 0.5) + 0.06 * (fine.z - 0.5);
     vec3 grass = mix(vec3(0.066, 0.088, 0.032), vec3(0.165, 0.148, 0.072), smoothstep(0.35, 0.72, wide.z + 0.5 * (fine.z - 0.5)));
-    Surface s = Surface(grass * (0.75 + 0.5 * grain.z), rough, 0.0);
+    Surface s = Surface(grass * (0.75 + 0.5 * grain.z), rough, 0.0, 0.0);
     // Shrubs where the slope holds them: thickets with soft edges, and few between them.
     float thicket = smoothstep(0.42, 0.62, wide.z + 0.5 * (middle.z - 0.5));
     float shrub = smoothstep(0.46, 0.20, middle.w + 0.30 * (fine.z - 0.5) + 0.45 * (0.5 - thicket));
@@ -71,7 +72,7 @@ const head = /* glsl */ `
     if (sea > 0.0) lay(s, vec3(0.012, 0.034, 0.046), 0.03 * noiseAt(at.xy, 11.0).xy + 0.02 * noiseAt(at.yx, 3.1).xy, 0.9, sea);
   }
 
-  // Earth that debris has run over: scoured, dark and wet, strewn with what it left.
+  // Earth that debris has run over: stripped of plants, paler than grass and shrubs and than the mud itself, strewn with what it left.
   void layTrail(inout Surface s, vec2 at) {
     vec2 uv = (at - uTrailPlacing.xy) * uTrailPlacing.zw;
     if (uTrailPlacing.z <= 0.0 || any(lessThan(uv, vec2(0.0))) || any(greaterThan(uv, vec2(1.0)))) return;
@@ -79,13 +80,16 @@ const head = /* glsl */ `
     if (peak <= 0.0) return;
     vec4 middle = noiseAt(at, 9.0), fine = noiseAt(at.yx, 2.3);
     float share = smoothstep(0.03, 0.22, peak + 0.22 * (middle.z - 0.5));
-    vec3 earth = mix(vec3(0.062, 0.043, 0.028), vec3(0.105, 0.075, 0.050), smoothstep(0.35, 0.7, fine.z));
+    vec3 earth = mix(vec3(0.250, 0.186, 0.122), vec3(0.345, 0.268, 0.184), smoothstep(0.35, 0.7, fine.z));
+    // Damp in its hollows, with stones.
+    earth *= 0.62 + 0.38 * smoothstep(0.30, 0.55, middle.z);
     float stones = smoothstep(0.26, 0.18, fine.w) * smoothstep(0.45, 0.6, middle.z);
-    earth = mix(earth, vec3(0.19, 0.175, 0.155), 0.6 * stones);
-    lay(s, earth, 0.5 * middle.xy + 0.35 * fine.yx, 0.35 + 0.3 * smoothstep(0.5, 0.3, middle.z), 0.94 * share);
+    earth = mix(earth, vec3(0.30, 0.28, 0.25), 0.6 * stones);
+    lay(s, earth, 0.5 * middle.xy + 0.35 * fine.yx, 0.12, 0.94 * share);
   }
 
-  // The debris: thin and light at its edges, dark where it is thick, rougher and paler where it is fast. Its ripples move with it.
+  // The debris: wet mud far darker than any ground, so that it is found on grass, soil, rock and photos alike, in the sun and in the shade.
+  // A pale margin of splashes where it is thin, pale crests where it is fast, and at the front, where it pushes stones before it. Its ripples move with it.
   float layMud(inout Surface s, vec2 at, vec3 n) {
     vec2 flow = smoothFlowAt(at);
     if (flow.x <= 0.004) return 0.0;
@@ -101,12 +105,18 @@ const head = /* glsl */ `
     vec4 c = noiseAt(at.yx - shift.yx * (first - 0.5), 1.7), d = noiseAt(at.yx - shift.yx * (second - 0.5) + 1.1, 1.7);
     vec4 fine = mix(c, d, abs(2.0 * first - 1.0));
     float fast = smoothstep(1.5, 9.0, flow.y);
-    float thick = 1.0 - exp(-flow.x / 0.7);
-    vec3 mud = mix(vec3(0.098, 0.070, 0.046), vec3(0.032, 0.023, 0.015), thick);
-    mud = mix(mud, vec3(0.17, 0.130, 0.092), 0.6 * fast * smoothstep(0.42, 0.72, 0.6 * lumps.z + 0.4 * fine.z));
+    float thick = 1.0 - exp(-flow.x / 0.2);
+    vec3 mud = mix(vec3(0.040, 0.028, 0.017), vec3(0.013, 0.0085, 0.0050), thick);
     mud *= 0.8 + 0.4 * fine.z;
-    float share = smoothstep(0.02, 0.16, flow.x + 0.10 * (fine.z - 0.5));
-    lay(s, mud, slope + (0.22 + 0.5 * fast) * lumps.xy + (0.06 + 0.22 * fast) * fine.yx, 0.95 - 0.45 * fast, share);
+    float crests = 0.55 * fast * smoothstep(0.56, 0.74, 0.6 * lumps.z + 0.4 * fine.z);
+    mud = mix(mud, vec3(0.25, 0.19, 0.125), crests);
+    // At rest it is as dark; only its film of water is gone.
+    float moving = smoothstep(0.05, 0.8, flow.y);
+    float margin = smoothstep(0.11, 0.04, flow.x + 0.05 * (fine.z - 0.5)) * (0.35 + 0.65 * moving);
+    mud = mix(mud, vec3(0.30, 0.23, 0.155), 0.8 * margin);
+    float share = smoothstep(0.02, 0.10, flow.x + 0.06 * (fine.z - 0.5));
+    lay(s, mud, slope + (0.30 + 0.4 * fast) * lumps.xy + (0.08 + 0.18 * fast) * fine.yx, (0.25 + 0.6 * moving) * (1.0 - 0.8 * margin), share);
+    s.mud = max(s.mud, share * (1.0 - margin));
     return share;
   }
 `;
@@ -155,11 +165,13 @@ const light = /* glsl */ `
     outgoingLight = reflectedLight.directDiffuse * sunny + reflectedLight.indirectDiffuse * naturalOpen;
     if (natural.wet > 0.02) {
       vec3 middle = normalize(uSunWorld + towards);
-      float gloss = 90.0;
+      // Mud scatters what it mirrors: broad lights instead of sharp ones, and a brown cast, since the blue of the sky on brown is purple.
+      float gloss = mix(90.0, 22.0, natural.mud);
       float grazing = pow(1.0 - max(dot(worldNormal, towards), 0.0), 5.0);
-      float mirror = 0.05 + 0.6 * grazing;
+      float mirror = mix(0.05 + 0.6 * grazing, 0.022 + 0.35 * grazing, natural.mud);
       float spot = pow(max(dot(worldNormal, middle), 0.0), gloss) * (gloss + 8.0) / 25.0;
-      outgoingLight += natural.wet * (lit * facing * uSunLight * spot * 0.06 + naturalOpen * mirror * skyTowards(reflect(-towards, worldNormal)));
+      vec3 film = mix(vec3(1.0), vec3(1.0, 0.80, 0.56), natural.mud);
+      outgoingLight += natural.wet * film * (lit * facing * uSunLight * spot * 0.06 + naturalOpen * mirror * skyTowards(reflect(-towards, worldNormal)));
     }
     outgoingLight = developed(throughAir(outgoingLight, sight));
   }
