@@ -54,7 +54,7 @@ Stages::Stages(const sim::Model& model) {
              {"update_multipliers", pair.update_multipliers},
              {"apply", pair.apply}});
     }
-    add({{"undo_overlaps", particle.undo_overlaps},
+    add({{"resolve_penetration", particle.resolve_penetration},
          {"enforce_boundaries", particle.enforce_boundaries},
          update_velocities,
          {"apply_viscosity", particle.apply_viscosity},

@@ -154,11 +154,11 @@ Result<ChildOutcome> run_child(const ChildProcess& child) {
         ended = waitpid(process, &status, WNOHANG) == process;  // before the last look at what it wrote
         if (poll(files.data(), files.size(), ended ? 0 : look_every) > 0) {
             if (files[0].revents != 0 && !read_some(out.read, lines)) files[0].fd = -1;
-            if (files[1].revents != 0 && !read_some(error.read, outcome.last_words)) files[1].fd = -1;
+            if (files[1].revents != 0 && !read_some(error.read, outcome.stderr_tail)) files[1].fd = -1;
         }
         take_lines(lines, child.on_line);
-        if (outcome.last_words.size() > 2 * longest_words) {
-            outcome.last_words.erase(0, outcome.last_words.size() - longest_words);
+        if (outcome.stderr_tail.size() > 2 * longest_words) {
+            outcome.stderr_tail.erase(0, outcome.stderr_tail.size() - longest_words);
         }
         if (child.shall_end && child.shall_end()) ending.ask();
         if (child.patience.count() > 0 && Clock::now() - begun > child.patience && !ended) {
@@ -169,7 +169,7 @@ Result<ChildOutcome> run_child(const ChildProcess& child) {
     // What was in the pipes still.
     while (files[0].fd >= 0 && poll(files.data(), 1, 0) > 0 && read_some(out.read, lines))
         take_lines(lines, child.on_line);
-    while (files[1].fd >= 0 && poll(files.data() + 1, 1, 0) > 0 && read_some(error.read, outcome.last_words)) {
+    while (files[1].fd >= 0 && poll(files.data() + 1, 1, 0) > 0 && read_some(error.read, outcome.stderr_tail)) {
     }
     if (WIFSIGNALED(status)) outcome.signal = WTERMSIG(status);
     if (WIFEXITED(status)) outcome.exit_code = WEXITSTATUS(status);

@@ -31,10 +31,10 @@ struct ChildProcess {
 };
 
 struct ChildOutcome {
-    int exit_code = -1;      ///< -1: it was ended by a signal
-    int signal = 0;          ///< 0: none
-    bool too_slow = false;   ///< it ran out of its time and was ended
-    std::string last_words;  ///< the end of what it wrote to standard error
+    int exit_code = -1;       ///< -1: it was ended by a signal
+    int signal = 0;           ///< 0: none
+    bool too_slow = false;    ///< it ran out of its time and was ended
+    std::string stderr_tail;  ///< the end of what it wrote to standard error
 
     [[nodiscard]] bool success() const { return exit_code == 0; }
 };

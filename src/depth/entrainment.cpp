@@ -15,8 +15,8 @@ double Entrainment::loosened(const Solver& solver, const terrain::BedMaterial& m
     // Slower debris than a tenth of the speed of a fall through its own depth erodes nothing.
     if (!(speed > 0.1 * std::sqrt(gravity * depth))) return 0;
     const double cosine = 1 / std::sqrt(1 + square_slope), sine = std::sqrt(square_slope) * cosine;
-    return sim::loosened_by_shear(material, solver.material().rest_density, gravity, depth, cosine, sine,
-                                  bed_.eroded[cell] + loose_[cell], step);
+    return sim::eroded_by_shear(material, solver.material().rest_density, gravity, depth, cosine, sine,
+                                bed_.eroded[cell] + loose_[cell], step);
 }
 
 double Entrainment::entrain(Solver& solver) {

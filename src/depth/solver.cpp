@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include "core/hash.hpp"
+#include "core/max_or_nan.hpp"
 #include "depth/formulas.hpp"
 
 namespace talus::depth {
@@ -17,10 +18,6 @@ namespace {
 constexpr double courant_number = 0.6;
 /// Of the pore pressure that all debris refers to: then it is reckoned anew.
 constexpr double least_left = 1e-15;
-
-float greater_or_unknown(float a, float b) {
-    return std::isnan(a) || b <= a ? a : b;
-}
 
 }  // namespace
 
@@ -292,7 +289,7 @@ Status Solver::advance(double longest) {
         left_ += advance_stage(true);
     }
     float fastest = 0;
-    for (std::size_t s = 0; s < segments_.size(); ++s) fastest = greater_or_unknown(fastest, fastest_[s]);
+    for (std::size_t s = 0; s < segments_.size(); ++s) fastest = max_or_nan(fastest, fastest_[s]);
     signal_ = fastest;
     time_ += time_step_;
     drain();

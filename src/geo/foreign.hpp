@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "core/result.hpp"
-#include "geo/mend_raster.hpp"
+#include "geo/repair_raster.hpp"
 
 /// Untrusted files, which somebody else made. They are read once, by a child process that sees nothing but their
 /// folder, and written again here from the numbers that it hands over: nothing else of this program opens them.

@@ -222,7 +222,7 @@ class GridRun {
             solver_.add(depth, release.spec.pore_pressure_ratio);
             held_ = std::max(0.0, held_ - release.volume);
             observer_.note_release(solver_, depth, solver_.volume() - before, held_);
-            stop_rule_.stir(solver_.time());
+            stop_rule_.reset(solver_.time());
         }
     }
     /// The releases by their start.

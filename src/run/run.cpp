@@ -100,7 +100,7 @@ void Run::take_step() {
         return stop(RunPhase::fault, stepped.error().message);
     }
     if (endless_) return;
-    if (!observer_.failed_buildings().empty()) stop_rule_.stir(summary().time);
+    if (!observer_.failed_buildings().empty()) stop_rule_.reset(summary().time);
     const bool waiting = still_waiting(model(), summary()) || inflow_to_come();
     const MovingDebris now = moving_particles(summary(), simulation_.motion(outputs_.deposited_speed));
     if (stop_rule_.over(summary().time, now, observer_.latest(), waiting)) {
@@ -117,14 +117,14 @@ void Run::change(const std::function<std::uint32_t(sim::Model&, sim::Ground&, si
         [&](sim::Model& model, sim::Ground& ground, sim::State& state) { first_new_id = edit(model, ground, state); });
     observer_.follow(model(), ground(), state(), first_new_id);
     simulation_.keep();
-    stop_rule_.stir(summary().time);
+    stop_rule_.reset(summary().time);
     if (phase_ == RunPhase::at_rest) stop(RunPhase::ready, "");
 }
 
 void Run::follow_gauge(std::size_t inflow, const std::vector<params::InflowSample>& hydrograph) {
     threads_.execute([&] { simulation_.follow_gauge(inflow, hydrograph); });
     observer_.expect(summary().seeded + simulation_.inflow().remaining());
-    stop_rule_.stir(summary().time);
+    stop_rule_.reset(summary().time);
 }
 
 RunStatus Run::status() const {

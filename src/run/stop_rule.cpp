@@ -43,7 +43,7 @@ bool DeclineDetector::declined(double time, double value, bool waiting) {
     return time - low_since_ >= duration_;
 }
 
-void DeclineDetector::stir(double time) {
+void DeclineDetector::reset(double time) {
     low_since_ = time;
     peak_ = 0;
 }
@@ -67,10 +67,10 @@ bool StopRule::over(double time, const MovingDebris& now, const observe::TimeSam
     return true;
 }
 
-void StopRule::stir(double time) {
-    rest_.stir(time);
-    energy_.stir(time);
-    momentum_.stir(time);
+void StopRule::reset(double time) {
+    rest_.reset(time);
+    energy_.reset(time);
+    momentum_.reset(time);
 }
 
 bool still_waiting(const sim::Model& model, const sim::StateSummary& state) {

@@ -31,7 +31,7 @@ class RestDetector {
     /// `now` with the deposited speed. `waiting`: more debris is still to be released or to come in.
     bool at_rest(double time, const MovingDebris& now, bool waiting);
     /// Restarts the rest duration, after something was changed.
-    void stir(double time) { quiet_since_ = time; }
+    void reset(double time) { quiet_since_ = time; }
     /// "debris came to rest (...)".
     [[nodiscard]] std::string reason() const;
 
@@ -50,7 +50,7 @@ class DeclineDetector {
         : what_(what), share_(share), duration_(duration) {}
 
     bool declined(double time, double value, bool waiting);
-    void stir(double time);
+    void reset(double time);
     /// "its kinetic energy fell below 1 % of its peak (for 3 s)".
     [[nodiscard]] std::string reason() const;
 
@@ -67,7 +67,7 @@ class StopRule {
 
     /// After a step. `latest`: of the time series. `waiting`: more debris is still to be released or to come in.
     bool over(double time, const MovingDebris& now, const observe::TimeSample& latest, bool waiting);
-    void stir(double time);
+    void reset(double time);
     /// Why it is over, and whether by the rest of the debris.
     [[nodiscard]] const std::string& reason() const { return reason_; }
     [[nodiscard]] bool at_rest() const { return at_rest_; }

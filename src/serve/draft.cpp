@@ -264,7 +264,7 @@ Status Draft::mend(const geo::Mending& mending) {
     const fs::path mended = folder_ / "data" / "terrain.tif", fresh = folder_ / "fresh.tif";
     std::error_code error;
     if (mending.any()) {
-        if (Status done = geo::mend_raster(upload->file.string(), fresh.string(), mending, limits_.cells); !done) {
+        if (Status done = geo::repair_raster(upload->file.string(), fresh.string(), mending, limits_.cells); !done) {
             return Error{plain(done.error().message)};
         }
         fs::rename(fresh, mended, error);

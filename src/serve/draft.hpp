@@ -14,8 +14,8 @@
 #include "core/grid.hpp"
 #include "core/result.hpp"
 #include "geo/foreign.hpp"
-#include "geo/mend_raster.hpp"
 #include "geo/raster.hpp"
+#include "geo/repair_raster.hpp"
 #include "scene/new_scene.hpp"
 
 namespace talus::serve {
@@ -54,8 +54,8 @@ class Draft {
     [[nodiscard]] Status take(std::string_view role, const std::string& name, const std::filesystem::path& upload,
                               const geo::ForeignReader& reader);
     void remove(std::string_view role);
-    /// Of the terrain; in place of what was to be mended before. Errors: no terrain, as geo::mend_raster; then nothing
-    /// changes.
+    /// Of the terrain; in place of what was to be mended before. Errors: no terrain, as geo::repair_raster; then
+    /// nothing changes.
     [[nodiscard]] Status mend(const geo::Mending& mending);
     /// What there is, and what is wrong with the terrain.
     [[nodiscard]] nlohmann::json describe() const;

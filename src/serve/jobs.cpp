@@ -63,7 +63,7 @@ void end_with(Job& job, const Result<ChildOutcome>& outcome, bool stopped, bool 
             job, JobState::failed,
             fmt::format("its process was ended by signal {} ({}){}", outcome->signal, strsignal(outcome->signal), why));
     }
-    std::string said = last_error(outcome->last_words);
+    std::string said = last_error(outcome->stderr_tail);
     end(job, JobState::failed, said.empty() ? fmt::format("exit code {}", outcome->exit_code) : std::move(said));
 }
 

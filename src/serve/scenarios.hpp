@@ -171,7 +171,7 @@ class Scenarios {
     [[nodiscard]] Slot* place_for(const std::string& trigger);
     void tell_setup(int index);
     [[nodiscard]] Result<twin::Done> set_speed(const nlohmann::json& action);
-    [[nodiscard]] Result<twin::Done> steer(const std::string& name, const Slots& slots);
+    [[nodiscard]] Result<twin::Done> run_control(const std::string& name, const Slots& slots);
     void change(Slot& slot, const nlohmann::json& action, const std::string& by, const Answer<twin::Done>& answer);
     void restart(const Slots& slots, const nlohmann::json& action, const std::string& by,
                  const Answer<twin::Done>& answer);

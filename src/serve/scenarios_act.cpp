@@ -18,10 +18,10 @@ namespace {
 using nlohmann::json;
 
 constexpr double slowest = 0.05, fastest = 100;  // times real time
-constexpr double abreast = 0.05;                 // s; closer in time than this, all take a single step
+constexpr double time_tolerance = 0.05;          // s; closer in time than this, all take a single step
 constexpr std::size_t longest_title = 60;
 
-bool drives(const std::string& name) {
+bool is_run_control(const std::string& name) {
     return name == "run" || name == "pause" || name == "step";
 }
 
@@ -30,7 +30,7 @@ Status check_keys_of(const std::string& name, const json& action) {
     if (name == "set_speed") return twin::check_keys(action, {"action", "factor"});
     if (name == "name_scenario") return twin::check_keys(action, {"action", "name"});
     if (name == "cancel") return twin::check_keys(action, {"action"});
-    return drives(name) ? twin::check_keys(action, {"action", "scenarios"}) : Status();
+    return is_run_control(name) ? twin::check_keys(action, {"action", "scenarios"}) : Status();
 }
 
 }  // namespace
@@ -49,7 +49,7 @@ Result<Scenarios::Slots> Scenarios::listed(const json& action, Slots otherwise) 
 }
 
 void Scenarios::step_all(const Slots& slots) {
-    const double limit = furthest_behind(slots)->scenario->time() + abreast;
+    const double limit = furthest_behind(slots)->scenario->time() + time_tolerance;
     for (Slot* slot : slots) {
         if (slot->ready() && slot->scenario->time() <= limit) advance(*slot);
     }
@@ -72,7 +72,7 @@ Result<twin::Done> Scenarios::set_speed(const json& action) {
     return twin::Done{fmt::format("{} times real time", value), ""};
 }
 
-Result<twin::Done> Scenarios::steer(const std::string& name, const Slots& slots) {
+Result<twin::Done> Scenarios::run_control(const std::string& name, const Slots& slots) {
     if (name == "pause") {
         for (Slot* slot : slots) slot->running = false;
         start_clock();
@@ -211,10 +211,10 @@ void Scenarios::act(int index, const json& action, const std::string& by, const 
     if (name == "set_speed") return answer(set_speed(action));
     if (name == "name_scenario") return answer(give_name(slot, action));
     if (name == "cancel") return answer(cancel(slot));
-    if (!drives(name) && name != "restart") return change(slot, action, by, answer);
-    const Result<Slots> slots = listed(action, drives(name) ? all() : Slots{&slot});
+    if (!is_run_control(name) && name != "restart") return change(slot, action, by, answer);
+    const Result<Slots> slots = listed(action, is_run_control(name) ? all() : Slots{&slot});
     if (!slots) return answer(slots.error());
-    if (drives(name)) return answer(steer(name, *slots));
+    if (is_run_control(name)) return answer(run_control(name, *slots));
     json alone = action;
     alone.erase("scenarios");
     restart(*slots, alone, by, answer);

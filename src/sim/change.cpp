@@ -81,7 +81,7 @@ void clear_solids(const Model& model, const Ground& ground, State& state, const 
         LocalPoint p = state.position.at(i), v = state.velocity.at(i);
         const float rank = grain_rank(state.id[i]);
         if (state.held[i] != 0 || !local.contains({p.x, p.y}) || !ground.solids.inside(p, rank)) continue;
-        put_out_of_solids(model, ground, p, rank, [&](const LocalPoint& normal) {
+        push_out_of_solids(model, ground, p, rank, [&](const LocalPoint& normal) {
             const float into = dot(v, normal);
             if (into < 0) v -= normal * into;
         });

@@ -13,7 +13,7 @@ namespace {
 
 /// Takes steps without inertia until `done`: velocities are reset after each.
 template <class Done>
-void creep(const Model& model, const Ground& ground, State& state, int max_rounds, Done done) {
+void relax_quasi_static(const Model& model, const Ground& ground, State& state, int max_rounds, Done done) {
     cpu::Backend backend(model, state.count);
     StageTimes times;
     for (int round = 0; round < max_rounds; ++round) {
@@ -74,8 +74,8 @@ bool relax(const Model& model, const Ground& ground, State& state, const std::ve
     closed.solids.close_nets();
     for (ReleaseGroup& release : still.releases) release.start_time = 0;
     state.time_step = model.largest_time_step();
-    creep(still, closed, state, max_rounds,
-          [&](const State& s) { return s.max_compression < dense_enough || !go_on(); });
+    relax_quasi_static(still, closed, state, max_rounds,
+                       [&](const State& s) { return s.max_compression < dense_enough || !go_on(); });
     if (ended) return false;
     round = max_rounds;
 
@@ -92,7 +92,7 @@ bool relax(const Model& model, const Ground& ground, State& state, const std::ve
         state.multiplier[i] = static_cast<float>(scale * overburden[state.id[i]]);
     }
     LoadWatch carried;
-    creep(still, closed, state, loading_rounds, [&](const State& s) { return carried(s) || !go_on(); });
+    relax_quasi_static(still, closed, state, loading_rounds, [&](const State& s) { return carried(s) || !go_on(); });
     state.time = 0;
     state.step = 0;
     return !ended;
@@ -104,7 +104,8 @@ void push_apart(const Model& model, const Ground& ground, State& state) {
     Model still = without_forces(model);
     still.releases = {{"", std::numeric_limits<double>::infinity(), 0, std::numeric_limits<std::uint32_t>::max()}};
     state.time_step = model.largest_time_step();
-    creep(still, ground, state, max_rounds, [](const State& s) { return s.max_compression < dense_enough; });
+    relax_quasi_static(still, ground, state, max_rounds,
+                       [](const State& s) { return s.max_compression < dense_enough; });
 }
 
 }  // namespace talus::sim

@@ -17,8 +17,8 @@ using Progress = std::function<bool(double share)>;
 /// Moves a local position out of the solids that it lies in, to their surface, and up to the ground. Calls `on_wall`
 /// with the normal of every surface that it is moved out of.
 template <class OnWall>
-void put_out_of_solids(const Model& model, const Ground& ground, LocalPoint& p, float grain_rank,
-                       const OnWall& on_wall) {
+void push_out_of_solids(const Model& model, const Ground& ground, LocalPoint& p, float grain_rank,
+                        const OnWall& on_wall) {
     const auto touching = static_cast<float>(model.contact_distance());
     // Once per wall at most in a corner; touching buildings act as one solid.
     for (int wall = 0; wall < 4 && ground.solids.inside(p, grain_rank); ++wall) {

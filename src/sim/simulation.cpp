@@ -20,7 +20,7 @@
 namespace talus::sim {
 
 /// The parts of a step other than moving particles.
-struct Simulation::OwnStages {
+struct Simulation::StepHooks {
     Simulation& self;
     StepWatcher* watcher;
 
@@ -148,7 +148,7 @@ void Simulation::measure_energy_and_speed() {
 }
 
 Status Simulation::advance(StepWatcher* watcher) {
-    const OwnStages own{*this, watcher};
+    const StepHooks own{*this, watcher};
     if (device_ == nullptr) return step(*processor_, model_, ground_, state_, times_, own);
     try {
         return step(*device_, model_, ground_, state_, times_, own);

@@ -74,7 +74,7 @@ class Simulation {
     [[nodiscard]] device::Traffic device_traffic() const;
 
   private:
-    struct OwnStages;
+    struct StepHooks;
 
     /// Nothing for the processor.
     [[nodiscard]] std::unique_lock<std::mutex> lock_device() const;

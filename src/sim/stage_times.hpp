@@ -24,7 +24,7 @@ namespace talus::sim {
     X(solve_density, "density", "an iteration: corrects density, resists shear within internal friction")              \
     X(solve_contacts, "contacts", "in the same iteration: ground and walls push back, with Coulomb friction")          \
     X(measure_compression, "compression", "compression of the debris after the iterations")                            \
-    X(undo_overlaps, "overlaps",                                                                                       \
+    X(resolve_penetration, "overlaps",                                                                                       \
       "moves particles apart that are still too dense or too close to the ground, without adding velocity")            \
     X(enforce_boundaries, "bounds",                                                                                    \
       "the swept test: no particle ends below ground or inside a building, at any speed")                              \

@@ -10,7 +10,7 @@ namespace talus::sim {
 
 /// The parts of a step other than moving particles (see Simulation). This one has none: particles are moved by the
 /// state's time step.
-struct MotionOnly {
+struct NoHooks {
     void inject_inflow() {}
     void choose_time_step() {}
     Status check_faults() { return {}; }
@@ -47,7 +47,7 @@ Status step(Backend& backend, const Model& model, const Ground& ground, State& s
         timed(Stage::measure_compression, [&] { backend.measure_compression(model, state); });
         if (!needs_iteration(state)) break;
     }
-    timed(Stage::undo_overlaps, [&] { backend.undo_overlaps(model, ground, state); });
+    timed(Stage::resolve_penetration, [&] { backend.resolve_penetration(model, ground, state); });
     timed(Stage::enforce_boundaries, [&] { backend.enforce_boundaries(model, ground, state); });
     timed(Stage::update_velocities, [&] { backend.update_velocities(model, ground, state); });
     timed(Stage::measure_impacts, [&] { backend.measure_impacts(model, ground, state); });
@@ -65,7 +65,7 @@ Status step(Backend& backend, const Model& model, const Ground& ground, State& s
 
 template <class Backend, class State>
 void step(Backend& backend, const Model& model, const Ground& ground, State& state, StageTimes& times) {
-    (void)step(backend, model, ground, state, times, MotionOnly{});  // which finds no fault
+    (void)step(backend, model, ground, state, times, NoHooks{});  // which finds no fault
 }
 
 }  // namespace talus::sim

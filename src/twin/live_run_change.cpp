@@ -41,7 +41,7 @@ constexpr double seconds_per_comparison = 13e-9;
 constexpr double seconds_per_particle = 0.5e-3, seconds_per_particle_and_piece = 12e-6;  // seeded
 
 /// Resistances: if any of them changes, debris at rest may move again.
-std::array<double, 7> holding_back(const sim::Model& model) {
+std::array<double, 7> resistance_values(const sim::Model& model) {
     return {model.friction_coefficient,
             model.building_friction_coefficient,
             model.internal_friction_coefficient,
@@ -287,7 +287,7 @@ void LiveRun::set_start_times(sim::Model& model, const sim::State& state, const 
 
 void LiveRun::put_in_force(Change& change) {
     const Setup& next = change.next;
-    const auto held_back = holding_back(model());
+    const auto held_back = resistance_values(model());
     const WorldPoint origin = ground().terrain.frame().origin;
     run_->change([&](sim::Model& model, sim::Ground& ground, sim::State& state) {
         set_material(model, next.material);
@@ -303,7 +303,8 @@ void LiveRun::put_in_force(Change& change) {
             clear_solids(model, ground, state, local);
         }
         if (change.cover) model.cover = std::move(*change.cover);
-        if (change.cover || held_back != holding_back(model)) wake(state, {-infinity, -infinity, infinity, infinity});
+        if (change.cover || held_back != resistance_values(model))
+            wake(state, {-infinity, -infinity, infinity, infinity});
         return first_new;
     });
     slots_ = std::max(slots_, state().seeded);

@@ -38,7 +38,7 @@ TEST(ChildProcess, its_lines_the_end_of_its_stderr_and_its_exit_code_are_told) {
     const auto outcome = run_child(child);
     ASSERT_TRUE(outcome);
     EXPECT_EQ(outcome->exit_code, 3);
-    EXPECT_EQ(outcome->last_words, "what is wrong\n");
+    EXPECT_EQ(outcome->stderr_tail, "what is wrong\n");
     EXPECT_THAT(lines, ElementsAre("/", "second"));
 }
 

@@ -83,7 +83,7 @@ TEST(RestDetector, it_must_last) {
     state.time = 5.96;
     EXPECT_TRUE(at_rest(rest, state, false));
     EXPECT_FALSE(at_rest(rest, state, true)) << "more is to come";
-    rest.stir(6);
+    rest.reset(6);
     state.time = 8.9;
     EXPECT_FALSE(at_rest(rest, state, false));
 }

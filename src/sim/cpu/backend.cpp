@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/max_or_nan.hpp"
 #include "sim/compression.hpp"
 #include "sim/particle_density.hpp"
 #include "sim/physics/contact.hpp"
@@ -12,11 +13,6 @@
 
 namespace talus::sim::cpu {
 namespace {
-
-/// The greater of two speeds; NaN takes precedence, or it would be missed.
-float greater_or_unknown(float a, float b) {
-    return std::isnan(a) || b <= a ? a : b;
-}
 
 Blocks everything(const State& state) {
     return {0, blocks_of(state.count)};
@@ -148,12 +144,12 @@ void Backend::solve_contacts(const Model& model, const Ground& ground, State& st
     run(particle_stages_.contacts, model, ground, state);
 }
 
-void Backend::undo_overlaps(const Model& model, const Ground& ground, State& state) {
+void Backend::resolve_penetration(const Model& model, const Ground& ground, State& state) {
     if (keeps_stress(model)) {
         run(stress_stages_.find_spread, model, ground, state);
         run(stress_stages_.spread, model, ground, state);
     }
-    run(particle_stages_.undo_overlaps, model, ground, state);
+    run(particle_stages_.resolve_penetration, model, ground, state);
 }
 
 void Backend::enforce_boundaries(const Model& model, const Ground& ground, State& state) {
@@ -176,9 +172,9 @@ void Backend::update_velocities(const Model& model, const Ground& ground, State&
     state.max_speed = simd::reduce_ranges(
         awake(state).last, block_grain, 0.0f,
         [&](std::size_t first, std::size_t last, float max) {
-            return greater_or_unknown(max, particle_stages_.update_velocities(data, first, last));
+            return max_or_nan(max, particle_stages_.update_velocities(data, first, last));
         },
-        greater_or_unknown);
+        max_or_nan);
 }
 
 void Backend::measure_impacts(const Model& model, const Ground& ground, State& state) const {

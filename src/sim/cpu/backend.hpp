@@ -44,7 +44,7 @@ class Backend {
     void solve_density(const Model& model, const Ground& ground, State& state);
     void solve_contacts(const Model& model, const Ground& ground, State& state);
     void measure_compression(const Model& model, State& state) const;
-    void undo_overlaps(const Model& model, const Ground& ground, State& state);
+    void resolve_penetration(const Model& model, const Ground& ground, State& state);
     void enforce_boundaries(const Model& model, const Ground& ground, State& state);
     void update_velocities(const Model& model, const Ground& ground, State& state);
     void measure_impacts(const Model& model, const Ground& ground, State& state) const;

@@ -62,8 +62,8 @@ void Columns::frame(const VectorArray& points, std::span<const std::uint8_t> asl
     const auto along = [&](const std::vector<float>& values, std::int64_t& first, std::int64_t& size) {
         const auto [low, high] = range_of(values, asleep);
         if (low > high) return;
-        first = whole_below(low * inverse_width_ - 0.5);
-        size = whole_below(high * inverse_width_ - 0.5) + 2 - first;
+        first = floor_to_int(low * inverse_width_ - 0.5);
+        size = floor_to_int(high * inverse_width_ - 0.5) + 2 - first;
     };
     along(points.x, first_.column, size_.column);
     along(points.y, first_.row, size_.row);

@@ -147,7 +147,7 @@ TALUS_STAGE void contacts(const StageData& data, std::size_t first, std::size_t 
 
 /// Moves overlapping particles apart without changing their velocity: debris that is too dense (with stresses, its
 /// shift is already computed), and debris too close to ground or walls.
-TALUS_STAGE void undo_overlaps(const StageData& data, std::size_t first, std::size_t last) {
+TALUS_STAGE void resolve_penetration(const StageData& data, std::size_t first, std::size_t last) {
     const Model& model = data.model;
     Work& work = data.work;
     const bool spread = model.solver.internal_friction == params::InternalFriction::stress;
@@ -318,7 +318,7 @@ ParticleStages make_stages(params::KernelChoice kernel) {
                           pack_motion,
                           resist,
                           contacts,
-                          undo_overlaps,
+                          resolve_penetration,
                           enforce_boundaries,
                           update_velocities,
                           nullptr,

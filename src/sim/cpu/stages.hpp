@@ -19,7 +19,7 @@ struct ParticleStages {
     StageFunction pack_motion;  ///< positions and velocities in rows, for neighbours to read
     StageFunction resist;       ///< resistance of every particle; only where it varies between them
     StageFunction contacts;     ///< with ground and walls
-    StageFunction undo_overlaps;
+    StageFunction resolve_penetration;
     StageFunction enforce_boundaries;
     /// Returns the largest speed, m/s; NaN where any is.
     float (*update_velocities)(const StageData& data, std::size_t first, std::size_t last);

@@ -57,7 +57,7 @@ class Backend {
     virtual void solve_density(const Model& model, const Ground& ground, State& state) = 0;
     virtual void solve_contacts(const Model& model, const Ground& ground, State& state) = 0;
     virtual void measure_compression(const Model& model, State& state) = 0;
-    virtual void undo_overlaps(const Model& model, const Ground& ground, State& state) = 0;
+    virtual void resolve_penetration(const Model& model, const Ground& ground, State& state) = 0;
     virtual void enforce_boundaries(const Model& model, const Ground& ground, State& state) = 0;
     virtual void update_velocities(const Model& model, const Ground& ground, State& state) = 0;
     virtual void measure_impacts(const Model& model, const Ground& ground, State& state) = 0;

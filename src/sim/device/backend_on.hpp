@@ -121,7 +121,7 @@ class BackendOn final : public Resident<Executor> {
         executor_.template reduce<CompressionSum>(state.awake, {}, of, Add{}).write(state, state.count);
     }
 
-    void undo_overlaps(const Model& model, const Ground&, State& state) override {
+    void resolve_penetration(const Model& model, const Ground&, State& state) override {
         if (needs_.stress) {
             const auto factor = static_cast<float>(jacobi_factor(model.solver.under_relaxation, model.kernel));
             const auto share = static_cast<float>(spreading_share(state.time_step));
@@ -210,8 +210,8 @@ class BackendOn final : public Resident<Executor> {
         ColumnBox box{};
         box.inverse_width = 1 / column_width(model);
         const auto along = [&](float low, float high, std::int64_t& first, std::int64_t& size) {
-            first = whole_below(low * box.inverse_width - 0.5);
-            size = whole_below(high * box.inverse_width - 0.5) + 2 - first;
+            first = floor_to_int(low * box.inverse_width - 0.5);
+            size = floor_to_int(high * box.inverse_width - 0.5) + 2 - first;
         };
         along(all.x_min, all.x_max, box.first_column, box.columns);
         along(all.y_min, all.y_max, box.first_row, box.rows);

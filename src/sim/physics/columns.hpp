@@ -11,13 +11,13 @@ namespace talus::sim {
 inline constexpr float units_per_particle = 65536;
 
 /// As std::floor, which is a call without SSE4.1.
-[[nodiscard]] TALUS_DEVICE inline std::int64_t whole_below(double x) {
+[[nodiscard]] TALUS_DEVICE inline std::int64_t floor_to_int(double x) {
     const auto whole = static_cast<std::int64_t>(x);
     return whole - (static_cast<double>(whole) > x ? 1 : 0);
 }
 
 [[nodiscard]] TALUS_DEVICE inline std::uint32_t column_units(float share) {
-    return static_cast<std::uint32_t>(whole_below(static_cast<double>(share * units_per_particle) + 0.5));
+    return static_cast<std::uint32_t>(floor_to_int(static_cast<double>(share * units_per_particle) + 0.5));
 }
 
 /// Calls f(column, row, share) for the four columns whose centres surround a place, each with its share by bilinear
@@ -25,7 +25,7 @@ inline constexpr float units_per_particle = 65536;
 template <class F>
 TALUS_DEVICE void for_each_column(float x, float y, double inverse_width, const F& f) {
     const double u = x * inverse_width - 0.5, v = y * inverse_width - 0.5;
-    const std::int64_t column = whole_below(u), row = whole_below(v);
+    const std::int64_t column = floor_to_int(u), row = floor_to_int(v);
     const auto right = static_cast<float>(u - static_cast<double>(column)),
                upper = static_cast<float>(v - static_cast<double>(row));
     for (int dy = 0; dy < 2; ++dy) {

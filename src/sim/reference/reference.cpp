@@ -329,7 +329,7 @@ void Backend::measure_compression(const Model&, State& state) {
     sum.write(state, static_cast<double>(state.particles.size()));
 }
 
-void Backend::undo_overlaps(const Model& model, const Ground& ground, State& state) {
+void Backend::resolve_penetration(const Model& model, const Ground& ground, State& state) {
     const double factor = jacobi_factor(model.solver.under_relaxation, model.kernel);
     const double share = spreading_share(state.time_step), max_shift = model.particle_spacing / 4;
     const auto point = [&](std::size_t k) { return state.particles[k].linearised_at; };

@@ -128,7 +128,7 @@ LocalPoint AreaSource::take_site(const Model& model, const Ground& ground) {
         site_ = (site_ + stride_) % sites_.size();
         if (ground.solids.empty() || !ground.solids.inside(place)) return place;
     }
-    put_out_of_solids(model, ground, place, terrain::largest_grain, [](const LocalPoint&) {});
+    push_out_of_solids(model, ground, place, terrain::largest_grain, [](const LocalPoint&) {});
     return place;
 }
 

@@ -75,8 +75,8 @@ void Entrainment::find_shear_rates(const Model& model, const Ground& ground, con
         const double depth = count_[cell] * model.particle_volume() / area;
         const double cosine = ground.terrain.slope_cosine_of(cell);
         const double sine = std::sqrt(std::max(0.0, 1 - cosine * cosine));
-        const double loose = loosened_by_shear(material, model.rest_density, model.gravity, depth, cosine, sine,
-                                               bed.eroded[cell] + loose_[cell] / area, state.time_step);
+        const double loose = eroded_by_shear(material, model.rest_density, model.gravity, depth, cosine, sine,
+                                             bed.eroded[cell] + loose_[cell] / area, state.time_step);
         rate_[cell] = static_cast<float>(loose * area / count_[cell]);
         count_[cell] = 0;
     }
@@ -207,7 +207,7 @@ void Entrainment::make_room(const Model& model, const Ground& ground, State& sta
         if (!(distance > 0) || distance > reach) continue;
         p += away * (std::cbrt(distance * distance * distance + room) / distance - 1);
         if (!ground.terrain.covers(p.x, p.y)) continue;
-        put_out_of_solids(model, ground, p, grain_rank(state.id[i]), [](const LocalPoint&) {});
+        push_out_of_solids(model, ground, p, grain_rank(state.id[i]), [](const LocalPoint&) {});
         state.position.set(i, p);
         if (distance > 2 * spacing) continue;
         state.asleep[i] = 0;

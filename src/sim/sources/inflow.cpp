@@ -56,7 +56,7 @@ bool InflowFeeder::due(double time) const {
 }
 
 bool InflowFeeder::Source::leads() const {
-    return std::any_of(led.begin(), led.end(), [](const Row& row) { return row.first != row.last; });
+    return std::any_of(prescribed.begin(), prescribed.end(), [](const Row& row) { return row.first != row.last; });
 }
 
 bool InflowFeeder::Source::due(double time) const {
@@ -78,7 +78,7 @@ double InflowFeeder::Source::next_time(double time) const {
 void InflowFeeder::inject(const Model& model, const Ground& ground, State& state) {
     if (state.room() < state.count + remaining()) state.resize(state.count + remaining());
     for (Source& source : sources_) {
-        source.lead(ground, state);
+        source.prescribe_inflow(ground, state);
         while (source.due(state.time)) {
             const double before = source.last_time;
             source.last_time = source.next_time(state.time);
@@ -95,11 +95,11 @@ void InflowFeeder::inject(const Model& model, const Ground& ground, State& state
     for (AreaSource& area : areas_) area.inject(model, ground, state);
 }
 
-void InflowFeeder::Source::lead(const Ground& ground, State& state) {
+void InflowFeeder::Source::prescribe_inflow(const Ground& ground, State& state) {
     if (!leads()) return;
     const double early = inflow.volume_until(state.time - state.time_step), now = inflow.volume_until(state.time);
     if (state.time >= end() || !(now > early)) {  // between surges nothing drives the injected debris
-        led = {};
+        prescribed = {};
         return;
     }
     const WorldPoint& origin = ground.terrain.frame().origin;
@@ -108,12 +108,12 @@ void InflowFeeder::Source::lead(const Ground& ground, State& state) {
     const Vec3<double> from{inflow.from.x - origin.x, inflow.from.y - origin.y, 0};
     const double velocity =
         (inflow.way_until(state.time) - inflow.way_until(state.time - state.time_step)) / state.time_step;
-    for (std::uint64_t back = 1; back <= std::min(rows, led_rows); ++back) {
+    for (std::uint64_t back = 1; back <= std::min(rows, buffer_rows); ++back) {
         const std::uint64_t number = rows - back;
-        Row& row = led[number % led_rows];
+        Row& row = prescribed[number % buffer_rows];
         const double way = way_of(number, state.time);
         if (row.first == row.last) continue;
-        if (way > static_cast<double>(led_rows) * spacing) {
+        if (way > static_cast<double>(buffer_rows) * spacing) {
             row = {};
             continue;
         }
@@ -149,7 +149,7 @@ void InflowFeeder::Source::add_row(const Model& model, const Ground& ground, Sta
     const double in = inflow.volume_until(last_time) / particle_volume;
     const std::uint32_t reached = last_time >= end() ? total : static_cast<std::uint32_t>(std::lround(in));
     const std::uint32_t count = std::min(reached, total) - std::min(injected, reached);
-    led[rows % led_rows] = {state.seeded, state.seeded + count};
+    prescribed[rows % buffer_rows] = {state.seeded, state.seeded + count};
     if (count == 0) return;
     const WorldPoint& origin = ground.terrain.frame().origin;
     const double dx = inflow.to.x - inflow.from.x, dy = inflow.to.y - inflow.from.y, width = std::hypot(dx, dy);
@@ -179,7 +179,7 @@ void InflowFeeder::Source::add_row(const Model& model, const Ground& ground, Sta
             const Vec3<double> place = Vec3<double>{plan.x, plan.y, base.height} + base.normal * ((k + 0.5) * layer);
             LocalPoint p{static_cast<float>(place.x), static_cast<float>(place.y), static_cast<float>(place.z)};
             if (!ground.solids.empty()) {
-                put_out_of_solids(model, ground, p, grain_rank(state.seeded), [](const LocalPoint&) {});
+                push_out_of_solids(model, ground, p, grain_rank(state.seeded), [](const LocalPoint&) {});
             }
             const double above = (layers - k - 0.5) * layer;
             add_particle(state, p,

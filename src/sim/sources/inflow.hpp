@@ -19,9 +19,9 @@ namespace talus::sim {
 /// rest density, moving at the inflow velocity along the ground, and under the pressure of the particles above. Nothing
 /// is injected denser than at rest, so nothing is thrown apart.
 ///
-/// Over the first three spacings beyond the line rows are led: between steps their distance and velocity along the
-/// inflow are set to those of the hydrograph; across it they remain as the solver left them. Otherwise the newest row,
-/// with nothing behind it, would be pushed back by those in front, and the next one would be too close.
+/// Over the first three spacings beyond the line rows are prescribed: between steps their distance and velocity along
+/// the inflow are set to those of the hydrograph; across it they remain as the solver left them. Otherwise the newest
+/// row, with nothing behind it, would be pushed back by those in front, and the next one would be too close.
 ///
 /// Inflow over an area uses an AreaSource.
 class InflowFeeder {
@@ -37,14 +37,14 @@ class InflowFeeder {
     /// Replaces a hydrograph within Simulation::follow_gauge(); `inflow`: its index in the constructor's list. Until
     /// now both must be the same.
     void set_hydrograph(std::size_t inflow, const std::vector<params::InflowSample>& hydrograph);
-    /// Whether there is work at a time, s: a row is due, or rows are led.
+    /// Whether there is work at a time, s: a row is due, or rows are prescribed.
     [[nodiscard]] bool due(double time) const;
     /// Leads the latest rows and injects those due at the state's time, within Simulation::change(). Allocates nothing
     /// if the state's arrays have room.
     void inject(const Model& model, const Ground& ground, State& state);
 
   private:
-    static constexpr std::uint64_t led_rows = 3;
+    static constexpr std::uint64_t buffer_rows = 3;
     struct Row {
         std::uint32_t first = 0, last = 0;  ///< ids
     };
@@ -52,16 +52,16 @@ class InflowFeeder {
         terrain::Inflow inflow;
         double spacing = 0, particle_volume = 0;
         std::uint32_t total = 0, injected = 0;
-        bool gauged = false;              ///< its hydrograph is that of a gauge
-        std::uint64_t rows = 0;           ///< injected so far
-        double last_time = 0;             ///< s, of the last row
-        std::array<Row, led_rows> led{};  ///< row k at k % led_rows; empty: none, or no longer led
+        bool gauged = false;                        ///< its hydrograph is that of a gauge
+        std::uint64_t rows = 0;                     ///< injected so far
+        double last_time = 0;                       ///< s, of the last row
+        std::array<Row, buffer_rows> prescribed{};  ///< row k at k % buffer_rows; empty: none, or no longer prescribed
 
         [[nodiscard]] double way_of(std::uint64_t row, double time) const {
             return inflow.way_until(time) - static_cast<double>(row + 1) * spacing;
         }
         [[nodiscard]] bool leads() const;
-        void lead(const Ground& ground, State& state);
+        void prescribe_inflow(const Ground& ground, State& state);
 
         [[nodiscard]] double end() const { return inflow.hydrograph.back().time; }
         [[nodiscard]] bool due(double time) const;

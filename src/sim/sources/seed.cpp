@@ -82,7 +82,7 @@ void put_out_of_buildings(const Model& model, const Ground& ground, State& state
     if (ground.solids.empty()) return;
     for (std::uint32_t i = 0; i < state.count; ++i) {
         LocalPoint p = state.position.at(i);
-        put_out_of_solids(model, ground, p, terrain::largest_grain, [](const LocalPoint&) {});
+        push_out_of_solids(model, ground, p, terrain::largest_grain, [](const LocalPoint&) {});
         state.position.set(i, p);
     }
 }

@@ -1,4 +1,4 @@
-#include "geo/mend_raster.hpp"
+#include "geo/repair_raster.hpp"
 
 #include <algorithm>
 #include <array>
@@ -111,7 +111,7 @@ Result<RasterFacts> raster_facts(const std::string& file) {
     return facts;
 }
 
-Status mend_raster(const std::string& file, const std::string& to, const Mending& mending, double most_cells) {
+Status repair_raster(const std::string& file, const std::string& to, const Mending& mending, double most_cells) {
     TALUS_ASSIGN(const auto data, open_dataset(file, GDAL_OF_RASTER, "raster"));
     const GdalMessages messages;
     const auto failed = [&] {

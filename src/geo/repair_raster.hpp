@@ -36,7 +36,7 @@ struct Mending {
 
 /// Writes the first band, mended, as a GeoTIFF. Errors: no such system, no position, more than `most_cells` cells,
 /// cannot be written; then nothing remains.
-[[nodiscard]] Status mend_raster(const std::string& file, const std::string& to, const Mending& mending,
-                                 double most_cells);
+[[nodiscard]] Status repair_raster(const std::string& file, const std::string& to, const Mending& mending,
+                                   double most_cells);
 
 }  // namespace talus::geo
