@@ -71,7 +71,7 @@ Section declare_terrain() {
     s.key("band", "", &TerrainSpec::band, between(1, 65535), "The raster's band that holds elevations.");
     s.optional_key("extent_m", "m", &TerrainSpec::extent, anything(), "the whole raster",
                    "The part of the terrain to use, in its own coordinates.");
-    s.text("obtain", &TerrainSpec::obtain, "nothing is said", "Where the file is to be had, told to whoever lacks it.");
+    s.text("obtain", &TerrainSpec::obtain, "nothing is said", "Where to obtain the file; told to whoever lacks it.");
     s.path("deposit", &TerrainSpec::deposit, "nothing lies on the ground",
            "Raster of depths in metres that raise the ground, such as deposit_depth.tif of an earlier surge.");
     s.path("erosion", &TerrainSpec::erosion, "nothing was eroded",
@@ -97,21 +97,24 @@ Section declare_flow_path() {
 }
 
 Section declare_solver() {
-    Declaration<SolverSpec> s("solver", "How it is computed.", &SceneSpec::solver);
+    Declaration<SolverSpec> s("solver", "Numerical settings.", &SceneSpec::solver);
     s.optional_key("particle_spacing_m", "m", &SolverSpec::particle_spacing, between(1e-4, 100),
                    "from target_layers or target_particle_count",
-                   "Edge of the cube of debris that a particle stands for.");
+                   "Edge of the cube of debris that a particle stands for.")
+        .also_called({"particle_size", "particle_diameter", "resolution"});
     s.optional_key("target_layers", "", &SolverSpec::target_layers, between(1, 1000), "from target_particle_count",
                    "Particles over the mean thickness of the thinnest release, normal to the slope; an inflow across a "
                    "line counts with the mean thickness at which it enters.");
     s.optional_key("target_particle_count", "", &SolverSpec::target_particle_count, between(1, 1e8),
                    fmt::format("{}, unless one of the two keys above is given", SolverSpec::usual_particle_count),
-                   "Particles of the volume of all releases and inflows.");
+                   "Particles of the volume of all releases and inflows.")
+        .also_called({"particles", "number_of_particles", "particle_count"});
     s.at_most_one_of({"particle_spacing_m", "target_layers", "target_particle_count"});
     s.key("particle_limit", "", &SolverSpec::particle_limit, between(1, 1e8),
           "More particles than this are refused before the run.");
     s.optional_key("time_step_s", "s", &SolverSpec::time_step, between(1e-5, 1),
-                   "adaptive: a particle moves at most displacement_limit of a spacing per step", "Fixed time step.");
+                   "adaptive: a particle moves at most displacement_limit of a spacing per step", "Fixed time step.")
+        .also_called({"dt"});
     s.key("displacement_limit", "", &SolverSpec::displacement_limit, between(0.001, 1),
           "Share of a spacing that a particle moves at most in an adaptive time step.");
     s.optional_key("largest_time_step_s", "s", &SolverSpec::largest_time_step, between(1e-5, 1),
@@ -139,18 +142,21 @@ Section declare_solver() {
     s.key("depenetration_speed_mps", "m/s", &SolverSpec::depenetration_speed, between(1e-6, 1000),
           "With internal_friction = \"pair\": the fastest that compression at the start of a step is undone.");
     s.key("end_time_s", "s", &SolverSpec::end_time, above_to(0, 1e7),
-          "Simulated time at which the run ends at the latest.");
+          "Simulated time at which the run ends at the latest.")
+        .also_called({"t_end", "end_time", "duration", "simulation_time"});
     s.key("stop_moving_share", "", &SolverSpec::stop_moving_share, from_to_below(0, 1),
           "Ends the run when less of the debris than this (but five particles at least) is faster than "
           "outputs.deposited_speed_mps and no more than a ten-thousandth ten times as fast; 0 never does.");
     s.key("stop_energy_share", "", &SolverSpec::stop_energy_share, from_to_below(0, 1),
           "Ends the run when the kinetic energy of the debris is below this share of its peak, as AvaFrame's kinEnergy "
           "does with 0.01, and nothing is still to start or to come in; 0 never does. Debris may still run, fall and "
-          "strike then.");
+          "strike then.")
+        .also_called({"stop_crit"});
     s.key("stop_momentum_share", "", &SolverSpec::stop_momentum_share, from_to_below(0, 1),
-          "The same for the momentum, mass times speed over all debris, as RAMMS does with 0.05; 0 never does.");
+          "The same for the momentum, mass times speed over all debris, as RAMMS does with 0.05; 0 never does.")
+        .also_called({"stop_momentum", "stop_criterion"});
     s.key("stop_duration_s", "s", &SolverSpec::stop_duration, between(0, 1e7),
-          "For how long no more than that may move, or the energy or momentum must be below its share.");
+          "Duration for which stop_moving_share, stop_energy_share or stop_momentum_share must hold.");
     s.key(
         "rest_duration_s", "s", &SolverSpec::rest_duration, between(0, 1e7),
         "Debris that has hardly moved (a hundredth of a particle's free-fall speed) for so long is at rest: it presses "
@@ -158,7 +164,8 @@ Section declare_solver() {
     s.key("compression_limit", "", &SolverSpec::compression_limit, above_to(0, 10),
           "Mean over-density (density over rest density, less 1) above which the run stops as a fault.");
     s.key("thread_count", "", &SolverSpec::thread_count, between(0, 512),
-          "Threads to compute with; 0 takes all cores. Results do not depend on it.");
+          "Threads to compute with; 0 takes all cores. Results do not depend on it.")
+        .also_called({"threads", "nCPU", "n_cpu"});
     s.choice("backend", &SolverSpec::backend, {"cpu", "auto", "cuda", "host"},
              "What moves the particles: the processor (cpu), a graphics card of NVIDIA (cuda), or the card where there "
              "is one and the particles are many (auto). host computes what the card would on the processor, slowly, to "
@@ -169,7 +176,8 @@ Section declare_solver() {
         "what happens inside the flow; buildings and barriers are whole cells (docs/depth-averaged.md).");
     s.optional_key("grid_cell_m", "m", &SolverSpec::grid_cell, between(1e-3, 1000),
                    "the terrain's cell, or the largest whole fraction of it up to 2.5 m",
-                   "Cell of the depth-averaged model.");
+                   "Cell of the depth-averaged model.")
+        .also_called({"mesh_cell_size", "cell_size", "grid_resolution"});
     s.key("flight", "", &SolverSpec::flight, anything(),
           "true: debris of the depth-averaged model leaves the ground where that would have to hold it, flies without "
           "friction, and loses the velocity normal to the ground where it lands. false: it follows the ground.");
@@ -197,7 +205,8 @@ Section declare_outputs() {
     s.key("front_velocity_window_m", "m", &OutputSpec::front_velocity_window, between(0.001, 1e5),
           "Chainage over which front velocity is fitted to the arrival times.");
     s.key("arrival_depth_m", "m", &OutputSpec::arrival_depth, between(0, 1000),
-          "Debris has arrived in a map cell once it is deeper than this.");
+          "Debris has arrived in a map cell once it is deeper than this.")
+        .also_called({"threshold_depth"});
     s.key("impact_filter_window_s", "s", &OutputSpec::impact_filter_window, above_to(0, 1000),
           "Averaging window of force and impact pressure on structures.")
         .assumes("Averaging time of force and impact pressure");

@@ -70,7 +70,12 @@ struct Parameter {
     std::string spacings_why;  ///< what happens otherwise
     std::string below;         ///< key of the same section that it must be below, where given
     std::optional<Need> need;
+    std::vector<std::string> synonyms;  ///< what other programs and papers call it: "xi"
 
+    Parameter& also_called(std::vector<std::string> names) {
+        synonyms = std::move(names);
+        return *this;
+    }
     Parameter& assumes(std::string what) {
         assumption = std::move(what);
         return *this;
@@ -202,7 +207,10 @@ void for_each_value(const SceneSpec& spec,
                     const std::function<void(const Section& section, std::size_t index, const Parameter& parameter,
                                              const ParameterValue& value)>& visit);
 
-/// The candidate with the smallest edit distance to `word`; empty without candidates.
+/// Keys of a section of which a word is a synonym, whatever its case, hyphens and underscores; empty: none.
+[[nodiscard]] std::vector<std::string> keys_called(const Section& section, std::string_view word);
+
+/// The candidate with the smallest edit distance to `word`, or to how it begins; empty without candidates.
 [[nodiscard]] std::string nearest_word(std::string_view word, const std::vector<std::string>& candidates);
 
 /// Levenshtein's distance: insertions, deletions and replacements that turn `a` into `b`.

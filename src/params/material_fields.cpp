@@ -12,7 +12,8 @@ void declare_resistance(Declaration<MaterialSpec>& s) {
     s.optional_key("turbulent_friction_mps2", "m/s2", &MaterialSpec::turbulent_friction, between(1, 1e6), "none",
                    "Voellmy's xi: flow of thickness h is slowed by g v2 / (xi h) in addition to Coulomb friction.")
         .assumes("Turbulent friction, Voellmy's ξ")
-        .live_as();
+        .live_as()
+        .also_called({"xi", "xsi", "xsi_voellmy", "turbulence_coefficient", "turbulent_coefficient"});
     s.optional_key(
         "turbulent_friction_thickness_m", "m", &MaterialSpec::turbulent_friction_thickness, between(0.001, 1000),
         "xi is the same at every thickness",
@@ -24,37 +25,40 @@ void declare_resistance(Declaration<MaterialSpec>& s) {
          "turbulent friction. nu is the kinematic viscosity, dynamic viscosity over density: the viscous term "
          "of FLO-2D and HEC-RAS with K = 24.")
         .assumes("Laminar drag, kinematic viscosity")
-        .live_as();
+        .live_as()
+        .also_called({"nu"});
     s.optional_key("laminar_viscosity_Pas", "Pa s", &MaterialSpec::laminar_dynamic_viscosity, between(0, 1e9),
-                   "laminar_viscosity_m2ps", "The same as dynamic viscosity, in place of laminar_viscosity_m2ps.");
-    s.key(
-         "cohesion_Pa", "Pa", &MaterialSpec::cohesion, between(0, 1e7),
-         "Shear strength that needs no pressure, on the ground and inside: the yield stress of a mud where friction is "
-         "0.")
+                   "laminar_viscosity_m2ps", "The same as dynamic viscosity, in place of laminar_viscosity_m2ps.")
+        .also_called({"eta", "dynamic_viscosity"});
+    s.key("cohesion_Pa", "Pa", &MaterialSpec::cohesion, between(0, 1e7),
+          "Shear strength at zero normal stress, on the ground and inside: the yield stress of a mud without friction.")
         .assumes("Cohesion")
         .live_as()
-        .needs(stress());
+        .needs(stress())
+        .also_called({"tau0", "tau_y", "yield_stress", "shear_strength"});
     s.key(
          "pore_pressure_ratio", "", &MaterialSpec::pore_pressure_ratio, between(0, 1),
          "r_u, pore pressure over the total normal stress when debris starts: friction on ground, buildings and inside "
          "is 1 - r_u of what it is in dry debris.")
         .assumes("Pore-pressure ratio")
         .live_as()
-        .needs(stress());
+        .needs(stress())
+        .also_called({"r_u", "pore_pressure"});
     s.optional_key("pore_pressure_decay_time_s", "s", &MaterialSpec::pore_pressure_decay_time, between(0.001, 1e9),
                    "pore pressure stays",
                    "Time in which the pore-pressure ratio falls to 1/e, from when debris starts to move, comes in or "
                    "is entrained.");
     s.key("rest_density_kgpm3", "kg/m3", &MaterialSpec::rest_density, between(1, 30000), "Bulk density of the debris.")
         .assumes("Bulk density")
-        .live_as();
+        .live_as()
+        .also_called({"rho", "density", "bulk_density"});
     s.optional_key("inertial_friction_coefficient", "", &MaterialSpec::inertial_friction_coefficient, between(0, 10),
                    "friction does not depend on the shear rate",
-                   "Internal friction that is neared as shear gets fast (mu(I) law); at slow shear it is "
+                   "Limiting friction at high shear rate (mu_2 of the mu(I) law); at low shear rate it is "
                    "internal_friction_coefficient.")
         .needs(stress(true));
     s.key("inertial_number", "", &MaterialSpec::inertial_number, between(1e-6, 1000),
-          "Inertial number at which internal friction has risen half way to inertial_friction_coefficient.");
+          "Inertial number I_0 at which internal friction lies half way to inertial_friction_coefficient.");
     s.key("grain_diameter_m", "m", &MaterialSpec::grain_diameter, between(1e-6, 100),
           "Grain diameter in the inertial number.");
     s.key("grain_density_kgpm3", "kg/m3", &MaterialSpec::grain_density, between(1, 30000),
@@ -64,12 +68,13 @@ void declare_resistance(Declaration<MaterialSpec>& s) {
 }  // namespace
 
 Section declare_material() {
-    Declaration<MaterialSpec> s("material", "What moves.", &SceneSpec::material);
+    Declaration<MaterialSpec> s("material", "Debris properties.", &SceneSpec::material);
     s.key("friction_coefficient", "", &MaterialSpec::friction_coefficient, between(0, 10),
           "Coulomb friction on the ground (tangent of the friction angle), and on buildings and inside unless set "
           "apart.")
         .assumes("Coulomb friction on the ground")
-        .live_as();
+        .live_as()
+        .also_called({"mu", "friction", "tan_phi", "basal_friction", "mu_coulomb", "mu_voellmy"});
     s.optional_key("building_friction_coefficient", "", &MaterialSpec::building_friction_coefficient, between(0, 10),
                    "equal to friction_coefficient", "Coulomb friction on the walls and roofs of buildings.")
         .assumes("Coulomb friction on walls and roofs")
@@ -77,12 +82,14 @@ Section declare_material() {
     s.optional_key("internal_friction_coefficient", "", &MaterialSpec::internal_friction_coefficient, between(0, 10),
                    "equal to friction_coefficient", "Coulomb friction of debris on debris.")
         .assumes("Internal friction")
-        .live_as();
+        .live_as()
+        .also_called({"internal_friction", "tan_phi_internal"});
     s.key("viscosity", "", &MaterialSpec::viscosity, from_to_below(0, 1),
           "Share of the velocity difference to its neighbours that debris loses per 1/60 s, at any time step. The "
           "same share is another material at another particle spacing; kinematic_viscosity_m2ps is not.")
         .assumes("Viscosity, as smoothing per 1/60 s")
-        .live_as();
+        .live_as()
+        .also_called({"mu", "artificial_viscosity"});
     s.optional_key("kinematic_viscosity_m2ps", "m2/s", &MaterialSpec::kinematic_viscosity, between(0, 1e6),
                    "what viscosity amounts to at this particle spacing",
                    "Viscosity of the debris, in place of viscosity.");
@@ -152,7 +159,7 @@ Section declare_zone() {
                   .tick = "Laminar drag",
                   .tick_help = "A separate viscosity of laminar drag; unticked: as in [material]"});
     s.optional_key("cohesion_Pa", "Pa", &ZoneSpec::cohesion, between(0, 1e7), "as in [material]",
-                   "Shear strength without pressure between debris and this ground.")
+                   "Shear strength at zero normal stress between debris and this ground.")
         .live_in({.label = "Shear strength",
                   .slider_low = 0,
                   .slider_high = 10,

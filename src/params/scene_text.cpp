@@ -37,6 +37,12 @@ std::string header_of(const Section& section) {
 }
 
 /// Describes the section and its mutually exclusive keys.
+/// Its help, and what others call it.
+std::string meaning_of(const Parameter& parameter) {
+    if (parameter.synonyms.empty()) return parameter.help;
+    return fmt::format("{} Elsewhere: {}.", parameter.help, fmt::join(parameter.synonyms, ", "));
+}
+
 std::string help_of(const Section& section) {
     std::string text = section.help;
     for (const Alternatives& choice : section.alternatives) {
@@ -202,7 +208,7 @@ std::string scene_reference_markdown() {
             if (has_default) shown.insert(0, "`").push_back('`');
             out += fmt::format("| `{}` | {} | {} | {} | {} | {} |\n", parameter.key, parameter.unit,
                                markdown_cell(shown), markdown_cell(allowed_without_unit(parameter)),
-                               parameter.live.empty() ? "" : "live", markdown_cell(parameter.help));
+                               parameter.live.empty() ? "" : "live", markdown_cell(meaning_of(parameter)));
         }
     }
     return out;

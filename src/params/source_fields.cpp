@@ -17,7 +17,8 @@ Section declare_release() {
     s.text("layer", &ReleaseSpec::layer, "the only layer", "Layer of the file.");
     s.optional_key("thickness_m", "m", &ReleaseSpec::thickness, between(0.001, 1000), "one of the other three is given",
                    "Uniform thickness.")
-        .live_in({.label = "Thickness", .slider_low = 0.1, .slider_high = 10, .first = 1.5});
+        .live_in({.label = "Thickness", .slider_low = 0.1, .slider_high = 10, .first = 1.5})
+        .also_called({"rel_th", "release_thickness", "release_depth", "d0"});
     s.text("thickness_attribute", &ReleaseSpec::thickness_attribute, "one of the other three is given",
            "Attribute of the polygons that holds their thickness in metres.");
     s.path("thickness_raster", &ReleaseSpec::thickness_raster, "one of the other three is given",
@@ -27,7 +28,8 @@ Section declare_release() {
              "Whether thickness is measured normal to the slope or vertically, as a difference of elevations is.")
         .assumes("Direction in which the release's thickness is measured");
     s.optional_key("volume_m3", "m3", &ReleaseSpec::volume, between(1e-6, 1e12), "one of the other three is given",
-                   "Volume to release, spread as a uniform thickness over the polygons.");
+                   "Volume to release, spread as a uniform thickness over the polygons.")
+        .also_called({"release_volume", "V0"});
     s.key("start_time_s", "s", &ReleaseSpec::start_time, between(0, 1e7),
           "When the body starts to move; until then it is held in place.");
     s.key("shift_along_m", "m", &ReleaseSpec::shift_along, between(-1e5, 1e5),

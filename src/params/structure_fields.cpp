@@ -21,7 +21,7 @@ Section declare_buildings() {
         .assumes("Height of buildings whose data give none")
         .live_in({.label = "Height", .slider_low = 0.5, .slider_high = 40, .first = 6}, "height_m");
     s.text("resistance_attribute", &BuildingsSpec::resistance_attribute, "every building has resistance_Pa",
-           "Attribute that holds the pressure in Pa that a building stands.");
+           "Attribute that holds the pressure in Pa that a building withstands.");
     s.optional_key(
          "resistance_Pa", "Pa", &BuildingsSpec::resistance, between(1, 1e12), "buildings never fail",
          "Impact pressure (outputs.impact_patch_edge_m) above which a building is destroyed: it is gone from then on.")

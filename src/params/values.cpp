@@ -1,6 +1,5 @@
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 
 #include <fmt/format.h>
 
@@ -140,36 +139,6 @@ std::string toml_text(const ParameterValue& value) {
 
 std::string plain_text(const ParameterValue& value) {
     return std::visit(PlainText{}, value);
-}
-
-std::size_t edit_distance(std::string_view a, std::string_view b) {
-    std::vector<std::size_t> row(b.size() + 1);
-    std::iota(row.begin(), row.end(), std::size_t{0});
-    for (std::size_t i = 1; i <= a.size(); ++i) {
-        std::size_t diagonal = row[0];
-        row[0] = i;
-        for (std::size_t j = 1; j <= b.size(); ++j) {
-            const std::size_t replaced = diagonal + (a[i - 1] == b[j - 1] ? 0 : 1);
-            diagonal = row[j];
-            row[j] = std::min({replaced, row[j] + 1, row[j - 1] + 1});
-        }
-    }
-    return row[b.size()];
-}
-
-std::string nearest_word(std::string_view word, const std::vector<std::string>& candidates) {
-    std::string nearest;
-    std::size_t smallest = std::numeric_limits<std::size_t>::max();
-    for (const std::string& candidate : candidates) {
-        // Of "friction" the nearest is friction_coefficient, although viscosity has fewer other letters.
-        const bool begun = word.size() >= 3 && candidate.starts_with(word);
-        const std::size_t distance = begun ? 0 : edit_distance(word, candidate);
-        if (distance < smallest) {
-            smallest = distance;
-            nearest = candidate;
-        }
-    }
-    return nearest;
 }
 
 }  // namespace talus::params

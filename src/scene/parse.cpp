@@ -18,25 +18,37 @@ std::string header_of(const params::Section& section) {
     return section.repeats ? "[[" + section.name + "]]" : "[" + section.name + "]";
 }
 
-/// The section the key belongs to, or the nearest key of this section.
+/// The section that a key belongs to, or what it is called there; empty: neither.
+std::string where_it_belongs(std::string_view key) {
+    for (const params::Section& section : params::scene_sections()) {
+        if (section.find(key)) return "it belongs in " + header_of(section);
+    }
+    for (const params::Section& section : params::scene_sections()) {
+        if (const auto keys = params::keys_called(section, key); !keys.empty()) {
+            return fmt::format("it belongs in {} as {}", header_of(section), fmt::join(keys, " or "));
+        }
+    }
+    return "";
+}
+
+/// What others call so here, the section the key belongs to, or the nearest key of this section.
 std::string unknown_key(const params::Section& section, std::string_view key) {
     const std::string start = fmt::format("unknown key \"{}\" in {}; ", one_line(key, 80), header_of(section));
+    if (const auto meant = params::keys_called(section, key); !meant.empty()) {
+        return fmt::format("{}here it is called {}", start, fmt::join(meant, " or "));
+    }
+    if (const std::string elsewhere = where_it_belongs(key); !elsewhere.empty()) return start + elsewhere;
     std::vector<std::string> keys;
     for (const params::Parameter& parameter : section.parameters) keys.push_back(parameter.key);
-    for (const params::Section& other : params::scene_sections()) {
-        if (other.find(key)) return start + "it belongs in " + header_of(other);
-    }
     return start + "nearest known key: " + params::nearest_word(key, keys);
 }
 
 std::string unknown_section(std::string_view name) {
-    std::vector<std::string> names;
-    for (const params::Section& section : params::scene_sections()) {
-        names.push_back(section.name);
-        if (section.find(name)) {
-            return fmt::format("key \"{}\" stands outside a section; it belongs in {}", name, header_of(section));
-        }
+    if (const std::string section = where_it_belongs(name); !section.empty()) {
+        return fmt::format("key \"{}\" stands outside a section; {}", one_line(name, 80), section);
     }
+    std::vector<std::string> names;
+    for (const params::Section& section : params::scene_sections()) names.push_back(section.name);
     return fmt::format("unknown section \"{}\"; nearest known section: {}", one_line(name, 80),
                        params::nearest_word(name, names));
 }

@@ -258,6 +258,26 @@ TEST(NearestWord, TakesTheSmallestEditDistance) {
     EXPECT_EQ(nearest_word("viscocity", {"friction_coefficient", "viscosity"}), "viscosity");
     EXPECT_EQ(nearest_word("friction", {"viscosity", "friction_coefficient"}), "friction_coefficient")
         << "as it begins";
+    EXPECT_EQ(nearest_word("frictoin", {"viscosity", "friction_coefficient"}), "friction_coefficient");
+}
+
+TEST(KeysCalled, AreFoundByWhatOthersCallThemWhateverTheSpelling) {
+    const Section& material = *find_section("material");
+    EXPECT_THAT(keys_called(material, "mu"), ::testing::ElementsAre("friction_coefficient", "viscosity"));
+    EXPECT_THAT(keys_called(material, "xsiVoellmy"), ::testing::ElementsAre("turbulent_friction_mps2"));
+    EXPECT_THAT(keys_called(material, "yield-stress"), ::testing::ElementsAre("cohesion_Pa"));
+    EXPECT_TRUE(keys_called(material, "friction_coefficient").empty()) << "its own name is no synonym";
+    EXPECT_TRUE(keys_called(material, "").empty());
+}
+
+TEST(KeysCalled, AreKeysOfNoSectionUnderThatName) {
+    for (const Section& section : scene_sections()) {
+        for (const Parameter& parameter : section.parameters) {
+            for (const std::string& synonym : parameter.synonyms) {
+                EXPECT_EQ(section.find(synonym), nullptr) << section.name << "." << synonym;
+            }
+        }
+    }
 }
 
 }  // namespace

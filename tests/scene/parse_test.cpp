@@ -79,6 +79,18 @@ TEST_F(ParseScene, UnknownKeysNameTheNearestOne) {
               line(7) + "unknown key \"viscosity\" in [outputs]; it belongs in [material]");
 }
 
+TEST_F(ParseScene, UnknownKeysOfOtherProgramsLeadToTheKeyOfTheSameMeaning) {
+    EXPECT_EQ(error_after("[material]\nmu = 0.2\n"),
+              line(7) + "unknown key \"mu\" in [material]; here it is called friction_coefficient or viscosity");
+    EXPECT_THAT(error_after("[material]\nxi = 500\n"), EndsWith("here it is called turbulent_friction_mps2"));
+    EXPECT_THAT(error_after("[material]\nxsiVoellmy = 500\n"), EndsWith("here it is called turbulent_friction_mps2"));
+    EXPECT_THAT(error_after("[material]\nfrictoin = 0.2\n"), EndsWith("nearest known key: friction_coefficient"));
+    EXPECT_THAT(error_after("[material]\ncohesion = 100\n"), EndsWith("nearest known key: cohesion_Pa"));
+    EXPECT_THAT(error_after("[solver]\nxi = 500\n"), EndsWith("it belongs in [material] as turbulent_friction_mps2"));
+    EXPECT_EQ(error_of("xi = 500\n" + minimal),
+              line(1) + "key \"xi\" stands outside a section; it belongs in [material] as turbulent_friction_mps2");
+}
+
 TEST_F(ParseScene, ControlCharactersDoNotReachTheTerminal) {
     for (const std::string text : {"[solver]\n\"\\u001b[31m\\n\" = 1\n", "[solver]\nkernel = \"\\u001b[31m\\n\"\n",
                                    "[\"\\u001b[31m\"]\n", "[buildings]\nfile = \"a\\u0000b\"\n"}) {
