@@ -58,8 +58,8 @@ std::string compression_text(const observe::Compression& c) {
     std::string text = fmt::format(
         "mean {:.2f} % at worst (limit {:g} %), above {:g} % in {:.2g} % of the particles "
         "(limit {:g} %)",
-        100 * c.worst_mean, 100 * sim::mean_compression_limit, 100 * sim::squeezed_compression,
-        100 * c.worst_squeezed_share, 100 * sim::squeezed_share_limit);
+        100 * c.worst_mean, 100 * sim::mean_compression_limit, 100 * sim::overcompressed_compression,
+        100 * c.worst_overcompressed_share, 100 * sim::overcompressed_share_limit);
     if (c.time_share_iterated > 0)
         text += fmt::format(", extra iterations {:.2g} % of the time", 100 * c.time_share_iterated);
     return text;

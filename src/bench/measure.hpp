@@ -46,7 +46,7 @@ struct Row {
     double neighbours = 0;          ///< mean per particle, after the last step
     double bytes_per_particle = 0;  ///< allocated for it, on the card if one takes the steps; 0: not reported
     double calibration_rate = 0;    ///< units per second
-    double mean_iterations = 0;     ///< that a step took: more than `iterations` where debris was squeezed
+    double mean_iterations = 0;     ///< that a step took: more than `iterations` where debris was overcompressed
     double relative_rate = 0;       ///< particle-iterations per calibration unit
     std::uint64_t hash = 0;         ///< of the state after the last step
 

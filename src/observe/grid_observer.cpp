@@ -283,7 +283,7 @@ TimeSample GridObserver::sample(const depth::Solver& solver, double held, double
     s.volume_released = volume_released_ + held;
     s.volume_entrained = volume_entrained_;
     s.front_chainage = front;
-    s.mean_compression = s.max_compression = s.squeezed_share = never;
+    s.mean_compression = s.max_compression = s.overcompressed_share = never;
     s.time_step = solver.time_step();
     s.steps_per_second = steps_per_second;
     return s;

@@ -123,7 +123,7 @@ struct TimeSample {
     double potential_energy = 0;  ///< J, above the lowest terrain
     double momentum = 0;          ///< N s, mass times speed of all debris
     double largest_speed = 0;     ///< m/s
-    double mean_compression = 0, max_compression = 0, squeezed_share = 0;
+    double mean_compression = 0, max_compression = 0, overcompressed_share = 0;
     double time_step = 0;         ///< s
     double steps_per_second = 0;  ///< of wall time
 };
@@ -160,10 +160,11 @@ struct Erosion {
 
 /// Compression of the debris at the last iteration of every step (sim/compression.hpp).
 struct Compression {
-    double worst_mean = 0, worst_max = 0, worst_squeezed_share = 0;  ///< of all steps: mean and largest over the debris
-    double worst_mean_time = never, worst_max_time = never, worst_squeezed_time = never;  ///< s, when that was
-    double time_share_above = 0;     ///< of the simulated time, with the mean or the squeezed share above its limit
-    double mean_iterations = 0;      ///< per step
+    double worst_mean = 0, worst_max = 0,
+           worst_overcompressed_share = 0;  ///< of all steps: mean and largest over the debris
+    double worst_mean_time = never, worst_max_time = never, worst_overcompressed_time = never;  ///< s, when that was
+    double time_share_above = 0;  ///< of the simulated time, with the mean or the overcompressed share above its limit
+    double mean_iterations = 0;   ///< per step
     double time_share_iterated = 0;  ///< of the simulated time, in which steps took extra iterations
 
     /// Whether debris was too compressed in no more than a hundredth of the simulated time.

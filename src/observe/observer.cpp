@@ -43,7 +43,7 @@ TimeSample make_sample(const sim::Model& model, const Debris& debris, double dep
     sample.largest_speed = state.max_speed;
     sample.mean_compression = state.mean_compression;
     sample.max_compression = state.max_compression;
-    sample.squeezed_share = state.squeezed_share;
+    sample.overcompressed_share = state.overcompressed_share;
     sample.time_step = state.step > 0 ? state.time_step : 0;
     sample.steps_per_second = steps_per_second;
     return sample;
@@ -123,7 +123,7 @@ struct Observer::Parts {
         };
         keep(state.mean_compression, compression.worst_mean, compression.worst_mean_time);
         keep(state.max_compression, compression.worst_max, compression.worst_max_time);
-        keep(state.squeezed_share, compression.worst_squeezed_share, compression.worst_squeezed_time);
+        keep(state.overcompressed_share, compression.worst_overcompressed_share, compression.worst_overcompressed_time);
         if (too_compressed(state)) compressed_time += state.time_step;
         if (state.iterations > model.solver.iteration_count) iterated_time += state.time_step;
         iterations += static_cast<std::uint64_t>(state.iterations);

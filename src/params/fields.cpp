@@ -119,12 +119,13 @@ Section declare_solver() {
           "Share of a spacing that a particle moves at most in an adaptive time step.");
     s.optional_key("largest_time_step_s", "s", &SolverSpec::largest_time_step, between(1e-5, 1),
                    "sqrt(particle spacing / g) / 6, at least 1/60 and at most 1/30 s",
-                   "Upper bound of the adaptive time step. Fast, squeezed and very viscous debris shortens it.");
+                   "Upper bound of the adaptive time step. Fast, overcompressed and very viscous debris shortens it.");
     s.key("smallest_time_step_s", "s", &SolverSpec::smallest_time_step, between(1e-5, 1),
           "An adaptive time step below this stops the run as a fault.");
     s.key("iteration_count", "", &SolverSpec::iteration_count, between(1, 1000), "Solver iterations per time step.");
     s.key("extra_iteration_count", "", &SolverSpec::extra_iteration_count, between(0, 1000),
-          "Iterations that a step may take besides while debris is squeezed: past half of the limits of compression.");
+          "Iterations that a step may take besides while debris is overcompressed: past half of the limits of "
+          "compression.");
     s.choice("kernel", &SolverSpec::kernel, {"wendland_c2", "cubic_spline", "spiky", "poly6_spiky"},
              "Smoothing kernel; poly6_spiky is the pair of Macklin & Mueller (2013): Poly6 for the density, Spiky for "
              "its gradient.");

@@ -238,7 +238,7 @@ struct SolverSpec {
     std::optional<double> largest_time_step = {};  ///< s, upper bound of the adaptive step; see largest_time_step()
     double smallest_time_step = 1.0 / 3840;        ///< s, an adaptive step below it stops the run as a fault
     int iteration_count = 4;
-    int extra_iteration_count = 12;  ///< maximum extra iterations of a step while debris is squeezed
+    int extra_iteration_count = 12;  ///< maximum extra iterations of a step while debris is overcompressed
     KernelChoice kernel = KernelChoice::wendland_c2;
     InternalFriction internal_friction = InternalFriction::stress;
     double support_ratio = 2.2;          ///< support radius / particle spacing

@@ -16,7 +16,7 @@ std::string header(const run::Comparison& comparison) {
     }
     return text +
            ",particles,particle_spacing_m,steps,simulated_time_s,wall_time_s,worst_mean_compression,"
-           "worst_squeezed_share";
+           "worst_overcompressed_share";
 }
 
 void add_cost(Csv& csv, const run::RunResult& result) {
@@ -24,7 +24,7 @@ void add_cost(Csv& csv, const run::RunResult& result) {
     const observe::Compression& c = result.observation.compression;
     csv.row({of_particles(result.particles), of_particles(result.particle_spacing), static_cast<double>(result.steps),
              result.simulated_time, result.wall_time, of_particles(c.worst_mean),
-             of_particles(c.worst_squeezed_share)});
+             of_particles(c.worst_overcompressed_share)});
 }
 
 std::string outcome(const run::Comparison& comparison, const run::Comparison::Row& row) {

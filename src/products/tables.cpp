@@ -90,7 +90,7 @@ std::string time_table(const observe::Observation& observation, std::string_view
         "m3,"
         "volume_balance_m3,kinetic_energy_J,potential_energy_J,momentum_Ns,largest_speed_mps,mean_compression,max_"
         "compression,"
-        "squeezed_share,"
+        "overcompressed_share,"
         "time_step_s,steps_per_second",
         changed);
     for (const observe::TimeSample& s : observation.timeseries) {
@@ -99,8 +99,8 @@ std::string time_table(const observe::Observation& observation, std::string_view
         const auto after_a_step = [&](double value) { return s.time_step > 0 ? value : observe::never; };
         csv.row({s.time, s.front_chainage, s.volume_entrained, s.volume_held, s.volume_moving, s.volume_deposited,
                  s.volume_left, balance, s.kinetic_energy, s.potential_energy, s.momentum, s.largest_speed,
-                 after_a_step(s.mean_compression), after_a_step(s.max_compression), after_a_step(s.squeezed_share),
-                 after_a_step(s.time_step), after_a_step(s.steps_per_second)});
+                 after_a_step(s.mean_compression), after_a_step(s.max_compression),
+                 after_a_step(s.overcompressed_share), after_a_step(s.time_step), after_a_step(s.steps_per_second)});
     }
     return csv.text();
 }

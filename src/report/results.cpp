@@ -121,10 +121,10 @@ Json compression(const scene::Scene& scene, const run::RunResult& result) {
             {"worst_mean_percent", 100 * c.worst_mean},
             {"worst_mean_time_s", c.worst_mean_time},
             {"mean_limit_percent", 100 * sim::mean_compression_limit},
-            {"worst_squeezed_percent", 100 * c.worst_squeezed_share},
-            {"worst_squeezed_time_s", c.worst_squeezed_time},
-            {"squeezed_limit_percent", 100 * sim::squeezed_share_limit},
-            {"squeezed_compression_percent", 100 * sim::squeezed_compression},
+            {"worst_overcompressed_percent", 100 * c.worst_overcompressed_share},
+            {"worst_overcompressed_time_s", c.worst_overcompressed_time},
+            {"overcompressed_limit_percent", 100 * sim::overcompressed_share_limit},
+            {"overcompressed_compression_percent", 100 * sim::overcompressed_compression},
             {"worst_percent", 100 * c.worst_max},
             {"worst_time_s", c.worst_max_time},
             {"time_above_a_limit_percent", 100 * c.time_share_above},
@@ -269,19 +269,19 @@ Json quality(const scene::Scene& scene, const run::RunResult& result) {
                  "worst mean over the debris {} % (at {} s; limit {} %), more than {} % in {} % of the particles "
                  "at worst (limit {} %), worst particle {} %: ",
                  fixed(100 * c.worst_mean, 2), fixed(c.worst_mean_time, 1), fixed(100 * sim::mean_compression_limit, 0),
-                 fixed(100 * sim::squeezed_compression, 0), fixed(100 * c.worst_squeezed_share, 2),
-                 fixed(100 * sim::squeezed_share_limit, 0), fixed(100 * c.worst_max, 1)),
+                 fixed(100 * sim::overcompressed_compression, 0), fixed(100 * c.worst_overcompressed_share, 2),
+                 fixed(100 * sim::overcompressed_share_limit, 0), fixed(100 * c.worst_max, 1)),
              c.within_limits() ? "within limits"
                                : fmt::format("above a limit during {} % of the simulated time",
                                              significant(100 * c.time_share_above, 2)),
              c.within_limits()),
          fact("Iterations",
               c.time_share_iterated > 0
-                  ? fmt::format(
-                        "{} per step, up to {} more while debris was squeezed: in {} % of the simulated time, {} on "
-                        "average",
-                        scene.spec.solver.iteration_count, scene.spec.solver.extra_iteration_count,
-                        significant(100 * c.time_share_iterated, 2), fixed(c.mean_iterations, 1))
+                  ? fmt::format("{} per step, up to {} more while debris was overcompressed: in {} % of the simulated "
+                                "time, {} on "
+                                "average",
+                                scene.spec.solver.iteration_count, scene.spec.solver.extra_iteration_count,
+                                significant(100 * c.time_share_iterated, 2), fixed(c.mean_iterations, 1))
                   : fmt::format("{} per step", scene.spec.solver.iteration_count)),
          balance});
     return all;

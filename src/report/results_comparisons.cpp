@@ -47,10 +47,10 @@ Json cost_of(const run::RunResult& result) {
     if (result.depth_averaged())
         return {{"compression", nullptr}, {"particles", nullptr}, {"wall_time_s", wall_time(result)}};
     const observe::Compression& c = result.observation.compression;
-    return {
-        {"compression", fmt::format("{} / {}", fixed(100 * c.worst_mean, 2), fixed(100 * c.worst_squeezed_share, 1))},
-        {"particles", result.particles},
-        {"wall_time_s", wall_time(result)}};
+    return {{"compression",
+             fmt::format("{} / {}", fixed(100 * c.worst_mean, 2), fixed(100 * c.worst_overcompressed_share, 1))},
+            {"particles", result.particles},
+            {"wall_time_s", wall_time(result)}};
 }
 
 Json missing_row(const std::vector<Column>& columns, Json row, const run::VariantRun& run) {
@@ -64,7 +64,7 @@ Json rows_of_runs(const run::Comparison& comparison, const run::RunResult& base)
     std::vector<Column> columns = {{"run", "Run", ""}};
     for (const run::Quantity& q : comparison.quantities)
         columns.push_back({q.key, heading(q), q.unit, "s3", "", "not measured"});
-    columns.push_back({"compression", "Compression", "mean / squeezed, %", "", "n"});
+    columns.push_back({"compression", "Compression", "mean / overcompressed, %", "", "n"});
     columns.push_back({"particles", "Particles", "", "f0"});
     columns.push_back({"wall_time_s", "Wall time", "s", "f0"});
     Json all = table(columns, "comparison");
@@ -110,9 +110,9 @@ Json rows_of_quantities(const run::Comparison& comparison, const run::RunResult&
         row["limit"] = q.limit_percent > 0 ? Json(q.limit_percent) : Json("the same");
         add(std::move(row), [&](const run::Comparison::Row& run) { return change_cell(q, run.changes[k], true); });
     }
-    const auto squeezed = [](const run::RunResult& result) { return cost_of(result)["compression"]; };
-    add({{"quantity", "Compression, mean / squeezed, %"}, {"base", squeezed(base)}, {"limit", ""}},
-        [&](const run::Comparison::Row& run) { return squeezed(*run.run.result); });
+    const auto overcompressed = [](const run::RunResult& result) { return cost_of(result)["compression"]; };
+    add({{"quantity", "Compression, mean / overcompressed, %"}, {"base", overcompressed(base)}, {"limit", ""}},
+        [&](const run::Comparison::Row& run) { return overcompressed(*run.run.result); });
     add({{"quantity", "Particles"}, {"base", {{"value", base.particles}, {"format", "f0"}}}, {"limit", ""}},
         [](const run::Comparison::Row& run) {
             return Json{{"value", run.run.result->particles}, {"format", "f0"}};

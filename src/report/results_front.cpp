@@ -209,15 +209,15 @@ Json time_chart(const run::RunResult& result) {
     const auto& rows = result.observation.timeseries;
     if (rows.size() < 2) return {};
     const std::size_t stride = std::max<std::size_t>(1, rows.size() / 800);
-    std::vector<double> t, kinetic, potential, total, speed, mean_compression, squeezed, zero, deposited, moving, held,
-        left;
+    std::vector<double> t, kinetic, potential, total, speed, mean_compression, overcompressed, zero, deposited, moving,
+        held, left;
     double lowest = std::numeric_limits<double>::infinity(), max_energy = 0;
     for (const observe::TimeSample& s : rows) lowest = std::min(lowest, s.potential_energy);
     for (const observe::TimeSample& s : rows)
         max_energy = std::max(max_energy, s.kinetic_energy + s.potential_energy - lowest);
     const bool mega = max_energy >= 2e6;
     const double unit = mega ? 1e-6 : 1e-3;
-    ValueRange energies{0, 0}, speeds{0, 1}, compressions{0, 100 * sim::squeezed_share_limit * 1.1};
+    ValueRange energies{0, 0}, speeds{0, 1}, compressions{0, 100 * sim::overcompressed_share_limit * 1.1};
     for (std::size_t i = 0; i < rows.size(); i += stride) {
         const observe::TimeSample& s = rows[i];
         t.push_back(s.time);
@@ -228,10 +228,10 @@ Json time_chart(const run::RunResult& result) {
         speed.push_back(s.largest_speed);
         speeds.include(s.largest_speed);
         mean_compression.push_back(100 * s.mean_compression);
-        squeezed.push_back(100 * s.squeezed_share);
+        overcompressed.push_back(100 * s.overcompressed_share);
         if (!result.depth_averaged()) {
             compressions.include(mean_compression.back());
-            compressions.include(squeezed.back());
+            compressions.include(overcompressed.back());
         }
         zero.push_back(0);
         deposited.push_back(s.volume_deposited);
@@ -267,10 +267,10 @@ Json time_chart(const run::RunResult& result) {
     if (result.depth_averaged()) return chart_json(chart);
 
     Plot compressed(second, below, width, height, time, compressions);
-    compressed.axes("time, s", "compression and squeezed share, %");
+    compressed.axes("time, s", "compression and overcompressed share, %");
     compressed.line(t, mean_compression, "series blue", "mean compression");
-    compressed.line(t, squeezed, "series purple", "squeezed share");
-    static_assert(sim::mean_compression_limit == sim::squeezed_share_limit);  // one line for both
+    compressed.line(t, overcompressed, "series purple", "overcompressed share");
+    static_assert(sim::mean_compression_limit == sim::overcompressed_share_limit);  // one line for both
     compressed.horizontal(100 * sim::mean_compression_limit, "limit blue", "limit of both");
     chart.title = "Energy, volumes, largest speed and compression over time";
     chart.plots.push_back(std::move(compressed));

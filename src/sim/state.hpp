@@ -134,11 +134,11 @@ struct StateSummary {
     [[nodiscard]] std::uint32_t released() const { return seeded - entrained - removed; }
 
     // Measured by the last step.
-    double mean_compression = 0, max_compression = 0;  ///< of max(0, density / rest density - 1)
-    double mean_added_compression = 0;                 ///< by the step, to what it started with
-    double squeezed_share = 0, squeezing_share = 0;    ///< of the particles; see compression.hpp
-    int iterations = 0;                                ///< of the step
-    double max_speed = 0;                              ///< m/s
+    double mean_compression = 0, max_compression = 0;      ///< of max(0, density / rest density - 1)
+    double mean_added_compression = 0;                     ///< by the step, to what it started with
+    double overcompressed_share = 0, squeezing_share = 0;  ///< of the particles; see compression.hpp
+    int iterations = 0;                                    ///< of the step
+    double max_speed = 0;                                  ///< m/s
     std::vector<BuildingContact> building_contacts;
 };
 

@@ -251,7 +251,7 @@ json Scenario::state_json(bool with_hash) const {
                    {"peak_speed_mps", number_or_null<json>(peak_speed(run.observer(), state))},
                    {"mean_compression", number_or_null<json>(state.mean_compression)},
                    {"max_compression", number_or_null<json>(state.max_compression)},
-                   {"squeezed_share", number_or_null<json>(state.squeezed_share)},
+                   {"overcompressed_share", number_or_null<json>(state.overcompressed_share)},
                    {"too_compressed", state.step == 0 ? json() : json(run.too_compressed())},
                    {"verdict", state.step == 0 ? json() : json(run::verdict_json(run.verdict()))},
                    {"recording",
@@ -288,7 +288,7 @@ json Scenario::series_json() const {
     column("largest_speed_mps", &observe::TimeSample::largest_speed);
     column("mean_compression", &observe::TimeSample::mean_compression);
     column("max_compression", &observe::TimeSample::max_compression);
-    column("squeezed_share", &observe::TimeSample::squeezed_share);
+    column("overcompressed_share", &observe::TimeSample::overcompressed_share);
     column("time_step_s", &observe::TimeSample::time_step);
     const std::vector<observe::FrontSample> samples = observer.front();
     json front = json::object();

@@ -168,11 +168,11 @@ TEST(Observer, says_how_far_debris_was_compressed_and_when) {
     test::add_particle(state, {0, 0, 3}, {3, 4, 0});
     state.seeded = 1;
     Observer observer(model, ground, state, {}, params::OutputSpec{}, 1);
-    const auto step = [&](double time_step, double mean, double squeezed, double max, int iterations) {
+    const auto step = [&](double time_step, double mean, double overcompressed, double max, int iterations) {
         state.time += time_step;
         state.time_step = time_step;
         state.mean_compression = mean;
-        state.squeezed_share = squeezed;
+        state.overcompressed_share = overcompressed;
         state.max_compression = max;
         state.iterations = iterations;
         observer.after_step(model, ground, state, 0);
@@ -187,8 +187,8 @@ TEST(Observer, says_how_far_debris_was_compressed_and_when) {
     EXPECT_EQ(c.worst_mean_time, 0.75);
     EXPECT_EQ(c.worst_max, 0.3);
     EXPECT_EQ(c.worst_max_time, 0.25);
-    EXPECT_EQ(c.worst_squeezed_share, 0.4);
-    EXPECT_EQ(c.worst_squeezed_time, 1);
+    EXPECT_EQ(c.worst_overcompressed_share, 0.4);
+    EXPECT_EQ(c.worst_overcompressed_time, 1);
     EXPECT_DOUBLE_EQ(c.time_share_above, 0.75 / 2);
     EXPECT_DOUBLE_EQ(c.time_share_iterated, 0.75 / 2);
     EXPECT_DOUBLE_EQ(c.mean_iterations, 8);

@@ -129,7 +129,7 @@ TEST_F(NotMeasured, has_no_step_before_the_first) {
     for (const char* model : {"particles", "depth_averaged"}) {
         const Columns table = columns_of(written(model, true) / "timeseries.csv");
         for (const char* name :
-             {"mean_compression", "max_compression", "squeezed_share", "time_step_s", "steps_per_second"}) {
+             {"mean_compression", "max_compression", "overcompressed_share", "time_step_s", "steps_per_second"}) {
             EXPECT_EQ(table.at(name).front(), "") << model << " " << name;
         }
         EXPECT_NE(table.at("time_step_s").back(), "") << model;

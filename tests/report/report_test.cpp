@@ -133,8 +133,8 @@ TEST(Report, HasOneVerdictBesideItsKeyFigures) {
     EXPECT_FALSE(has(good, "BEYOND"));
     EXPECT_TRUE(has(words_of(good), "Convergence. Not tested; talus run --convergence"));
     observe::Compression& c = s.result.observation.compression;
-    c.worst_squeezed_share = 0.031;
-    c.worst_squeezed_time = 12.3;
+    c.worst_overcompressed_share = 0.031;
+    c.worst_overcompressed_time = 12.3;
     c.time_share_above = 0.25;
     const std::string html = s.html();
     EXPECT_TRUE(has(html, "BEYOND LIMITS: COMPRESSION")) << "on the maps";
@@ -157,7 +157,7 @@ TEST(Report, OfADepthAveragedRunSaysNothingThatOnlyParticlesHave) {
     Sample s;
     s.scene.spec.observations[0].source = s.scene.spec.observations[1].source = "";
     const std::string particles = words_of(s.html());
-    for (const char* part : {"particle", "ompression", "position-based", "squeezed", "averaged over 0.2"}) {
+    for (const char* part : {"particle", "ompression", "position-based", "overcompressed", "averaged over 0.2"}) {
         EXPECT_TRUE(has(particles, part)) << part;
     }
     s.scene.spec.solver.model = params::ModelChoice::depth_averaged;
@@ -180,8 +180,8 @@ TEST(Report, OfADepthAveragedRunSaysNothingThatOnlyParticlesHave) {
         for (std::size_t at = 0; (at = words.find(named)) != std::string::npos;)
             words.erase(at, std::string(named).size());
     }
-    for (const char* part : {"article", "ompression", "position-based", "squeezed", "iteration", "kernel", "Kernel",
-                             "Friction inside", "Held"}) {
+    for (const char* part : {"article", "ompression", "position-based", "overcompressed", "iteration", "kernel",
+                             "Kernel", "Friction inside", "Held"}) {
         const std::size_t at = words.find(part);
         EXPECT_EQ(at, std::string::npos) << (at == std::string::npos ? "" : words.substr(at < 80 ? 0 : at - 80, 160));
     }

@@ -88,20 +88,20 @@ Simulation cube(float speed, int extra_iterations, double spacing = testing::fin
     return {std::move(model), std::move(ground), testing::state_of(points, velocities)};
 }
 
-TEST(Step, takes_extra_iterations_where_debris_is_squeezed_and_only_there) {
+TEST(Step, takes_extra_iterations_where_debris_is_overcompressed_and_only_there) {
     Simulation loose = cube(0, 12);
     ASSERT_TRUE(loose.advance());
     EXPECT_EQ(loose.state().iterations, 4);
 
-    Simulation squeezed = cube(12, 12), without = cube(12, 0);
-    ASSERT_TRUE(squeezed.advance());
+    Simulation overcompressed = cube(12, 12), without = cube(12, 0);
+    ASSERT_TRUE(overcompressed.advance());
     ASSERT_TRUE(without.advance());
     EXPECT_EQ(without.state().iterations, 4);
-    EXPECT_GT(squeezed.state().iterations, 4);
-    EXPECT_LE(squeezed.state().iterations, 16);
-    EXPECT_LT(squeezed.state().mean_compression, without.state().mean_compression);
-    if (squeezed.state().iterations < 16) {
-        EXPECT_FALSE(needs_iteration(squeezed.state()));
+    EXPECT_GT(overcompressed.state().iterations, 4);
+    EXPECT_LE(overcompressed.state().iterations, 16);
+    EXPECT_LT(overcompressed.state().mean_compression, without.state().mean_compression);
+    if (overcompressed.state().iterations < 16) {
+        EXPECT_FALSE(needs_iteration(overcompressed.state()));
     }
 }
 
@@ -118,13 +118,13 @@ TEST(Step, takes_the_same_extra_iterations_on_any_number_of_threads) {
                                         static_cast<std::size_t>(threads));
         tbb::task_arena arena(threads);
         return arena.execute([] {
-            Simulation squeezed = cube(12, 12);
+            Simulation overcompressed = cube(12, 12);
             std::vector<int> iterations;
             for (int k = 0; k < 5; ++k) {
-                EXPECT_TRUE(squeezed.advance());
-                iterations.push_back(squeezed.state().iterations);
+                EXPECT_TRUE(overcompressed.advance());
+                iterations.push_back(overcompressed.state().iterations);
             }
-            return std::pair(iterations, hash_state(squeezed.state()));
+            return std::pair(iterations, hash_state(overcompressed.state()));
         });
     };
     const auto one = result_on(1);

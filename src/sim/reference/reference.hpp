@@ -38,7 +38,7 @@ struct State {
     std::vector<Particle> particles;
     std::vector<Entry> entry_of_id;
     // Of the last step; see compression.hpp.
-    double mean_compression = 0, max_compression = 0, mean_added_compression = 0, squeezed_share = 0,
+    double mean_compression = 0, max_compression = 0, mean_added_compression = 0, overcompressed_share = 0,
            squeezing_share = 0;
     int iterations = 0;  ///< that the step took
 

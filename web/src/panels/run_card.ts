@@ -6,7 +6,7 @@ import type { Twin } from "../state/twin";
 import { h } from "../ui/dom";
 
 const watched = (twin: Twin): Parameters<typeof watchAll>[0] =>
-  [twin.edited, ...twin.every("state"), ...twin.every("series"), twin.replay_s, twin.replaySqueezed];
+  [twin.edited, ...twin.every("state"), ...twin.every("series"), twin.replay_s, twin.replayOvercompressed];
 
 export function runCard(twin: Twin): HTMLElement {
   const cell = (label: string, help: string): { element: HTMLElement; value: HTMLElement } => {
@@ -42,12 +42,12 @@ export function runCard(twin: Twin): HTMLElement {
     if (message.textContent !== said) message.textContent = said;
     message.classList.toggle("bad", s?.status === "fault");
     // Before the first step there is nothing to judge.
-    const squeezed = live ? s?.too_compressed ?? null : twin.replaySqueezed.value;
-    light.hidden = squeezed === null;
-    light.className = `compression ${squeezed ? "bad" : "good"}`;
-    const text = `${squeezed ? "Debris too compressed" : "Compression within limits"}${live || twin.replay_s.value === null ? "" : ` at ${fixed(twin.replay_s.value, 1)} s`}`;
+    const overcompressed = live ? s?.too_compressed ?? null : twin.replayOvercompressed.value;
+    light.hidden = overcompressed === null;
+    light.className = `compression ${overcompressed ? "bad" : "good"}`;
+    const text = `${overcompressed ? "Debris too compressed" : "Compression within limits"}${live || twin.replay_s.value === null ? "" : ` at ${fixed(twin.replay_s.value, 1)} s`}`;
     if (light.textContent !== text) light.textContent = text;
-    light.title = s ? `Compression: mean ${fixed(100 * s.mean_compression, 2)} %, above 3 % in ${fixed(100 * s.squeezed_share, 1)} % of the particles; limits 1 % and 1 %` : "";
+    light.title = s ? `Compression: mean ${fixed(100 * s.mean_compression, 2)} %, above 3 % in ${fixed(100 * s.overcompressed_share, 1)} % of the particles; limits 1 % and 1 %` : "";
     // Of the run so far: a recording does not keep it.
     const judged = live ? s?.verdict ?? null : null;
     verdict.hidden = judged === null;
@@ -94,7 +94,7 @@ export function balance(twin: Twin): HTMLElement {
       ...(s.volume_entrained_m3 > 0 ? [row("Entrained from the bed", `${fixed(s.volume_entrained_m3, 1)} m³`)] : []),
       row("Residual", `${fixed(Math.abs(error) < 0.05 ? 0 : error, 1)} m³`));
     more.tBodies[0]?.replaceChildren(row("Step", live ? count(s.step) : "–"), row("Compression, mean", `${fixed(100 * s.mean_compression, 2)} %`),
-      row("Particles above 3 %", `${fixed(100 * s.squeezed_share, 2)} %`), row("Compression, largest", `${fixed(100 * s.max_compression, 2)} %`), row("Recording", `${s.recording.frames} frames, ${bytes(s.recording.bytes)}`),
+      row("Particles above 3 %", `${fixed(100 * s.overcompressed_share, 2)} %`), row("Compression, largest", `${fixed(100 * s.max_compression, 2)} %`), row("Recording", `${s.recording.frames} frames, ${bytes(s.recording.bytes)}`),
       row("State hash", live ? (s.hash ?? "while paused") : "–"));
   });
   const { scene } = twin;

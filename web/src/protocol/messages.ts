@@ -104,7 +104,7 @@ export interface State {
   peak_speed_mps: number | null;
   mean_compression: number;
   max_compression: number;
-  squeezed_share: number;
+  overcompressed_share: number;
   too_compressed: boolean | null;
   /** Of a moment ago while the run goes on; null before the first step. */
   verdict: Verdict | null;

@@ -50,7 +50,7 @@ export function stateAt(state: State, series: Series | null, time_s: number | nu
     largest_speed_mps: number("largest_speed_mps", state.largest_speed_mps),
     mean_compression: number("mean_compression", state.mean_compression),
     max_compression: number("max_compression", state.max_compression),
-    squeezed_share: number("squeezed_share", state.squeezed_share),
+    overcompressed_share: number("overcompressed_share", state.overcompressed_share),
     front_chainage_m: past.time["front_chainage_m"]?.[row] ?? null,
     front_velocity_mps: arrived !== null && time_s - arrived <= lately_s ? (front.front_velocity_mps[newest] ?? null) : null,
   };

@@ -73,7 +73,7 @@ export class Playback {
           this.twin.showFrame(frame);
           cells[name].impacts.value = impacts;
           cells[name].gauges.value = gauges;
-          if (name === this.twin.edited.value) this.twin.replaySqueezed.value = (frame.flags & tooCompressed) !== 0;
+          if (name === this.twin.edited.value) this.twin.replayOvercompressed.value = (frame.flags & tooCompressed) !== 0;
         }));
       });
       if (!fine) this.stop();

@@ -65,7 +65,7 @@ export class Twin {
   /** Displayed time of the recording; null: live. */
   readonly replay_s = new Cell<number | null>(null);
   /** Whether the displayed frame of the recording is too compressed. */
-  readonly replaySqueezed = new Cell(false);
+  readonly replayOvercompressed = new Cell(false);
   readonly playing = new Cell(false);
   readonly layer = new Cell<ShownLayer | "none">("none");
   /** Finished ensembles whose maps can be shown. */
