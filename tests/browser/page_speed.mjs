@@ -3,7 +3,6 @@
 // TALUS_SITE=FOLDER: with another build of the page, such as `npx vite build --minify false --outDir FOLDER`, whose functions have names.
 // Without a graphics card the pixels are drawn by the processor, in another process; the figures here are the page's own script and what
 // it hands to WebGL, which do not depend on the number of pixels, so that there are few of them.
-import { existsSync, readFileSync } from "node:fs";
 import { tmpdir } from "node:os";
 import { join } from "node:path";
 import { chromium } from "playwright-core";
@@ -12,14 +11,6 @@ import { Run, startServer, until } from "./twin/harness.mjs";
 const browser = await chromium.launch({ executablePath: process.env.TALUS_BROWSER ?? "/usr/bin/chromium", args: ["--headless", "--no-sandbox",
   "--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--ignore-gpu-blocklist", "--no-first-run", "--disable-features=LocalNetworkAccessChecks"] });
 const server = await startServer(process.argv.slice(2));
-const types = { js: "text/javascript", css: "text/css", html: "text/html", svg: "image/svg+xml" };
-/** Answers requests for the page's files from a folder. */
-async function serveFrom(page, folder) {
-  await page.route((url) => !url.pathname.startsWith("/api"), (route) => {
-    const path = join(folder, new URL(route.request().url()).pathname.replace(/\/$/, "/index.html"));
-    return existsSync(path) ? route.fulfill({ body: readFileSync(path), contentType: types[path.split(".").at(-1)] }) : route.continue();
-  });
-}
 /** Figures of so many pictures, one after the other. */
 const pictures = (page, count) => page.evaluate((wanted) => new Promise((resolve) => {
   const seen = [];
@@ -37,9 +28,7 @@ const pictures = (page, count) => page.evaluate((wanted) => new Promise((resolve
 
 try {
   const run = new Run(browser, join(tmpdir(), "talus_page_speed"));
-  const site = process.env.TALUS_SITE;
-  const page = await run.open(server.controller, { name: "Ada", finest: true, look: process.env.TALUS_LOOK ?? "natural", scale: 0.25,
-    prepare: (page) => (site ? serveFrom(page, site) : null) });
+  const page = await run.open(server.controller, { name: "Ada", finest: true, look: process.env.TALUS_LOOK ?? "natural", scale: 0.25, opening: true, reduced: false });
   console.log(`first picture    ${page.firstPicture_ms} ms after opening the link`);
   await page.selectOption("select[aria-label^=Speed]", "0.5");  // leaves the page a core
   await page.click(".run");

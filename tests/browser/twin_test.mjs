@@ -21,6 +21,7 @@ import { testScenarios } from "./twin/scenarios.mjs";
 import { testSharing } from "./twin/sharing.mjs";
 import { testStart } from "./twin/start.mjs";
 import { testTriggers } from "./twin/triggers.mjs";
+import { testVisible } from "./twin/visible.mjs";
 
 const [, , output, ...command] = process.argv;
 const browserPath = process.env.TALUS_BROWSER ?? "/usr/bin/chromium";
@@ -39,7 +40,7 @@ try {
 // WebGL without a graphics card: SwiftShader has to be asked for. Smooth edges would take it twice as long.
 const browser = await chromium.launch({ executablePath: browserPath, args: ["--headless", "--no-sandbox", "--use-angle=swiftshader",
   "--enable-unsafe-swiftshader", "--ignore-gpu-blocklist", "--webgl-msaa-sample-count=0", "--disable-background-networking",
-  "--disable-component-update", "--no-first-run"] });
+  "--disable-component-update", "--no-first-run", ...(process.env.TALUS_SITE ? ["--disable-features=LocalNetworkAccessChecks"] : [])] });
 // Before the limit of ctest, which would not say where it stood.
 setTimeout(() => {
   console.log(`FAILED  not over after 1100 s; last waited for: ${waitedFor()}`);
@@ -47,7 +48,7 @@ setTimeout(() => {
 }, 1_100_000).unref();
 const run = new Run(browser, resolve(output), command, process.env.TALUS_ONLY);
 const parts = { controls: testControls, readings: testReadings, restart: testRestart, scenarios: testScenarios, barrier: testBarrier, parts: testParts, erosion: testErosion, ground: testGround, look: testLook, photo: testPhoto,
-  backanalysis: testBackanalysis, depth_averaged: testDepthAveraged, drawing: testDrawing, sharing: testSharing, start: testStart, triggers: testTriggers };
+  backanalysis: testBackanalysis, depth_averaged: testDepthAveraged, drawing: testDrawing, sharing: testSharing, start: testStart, triggers: testTriggers, visible: testVisible };
 try {
   for (const part of (process.env.TALUS_PARTS ?? Object.keys(parts).join()).split(",")) {
     if (!parts[part]) throw new Error(`TALUS_PARTS names ${part}; there are ${Object.keys(parts).join(", ")}`);

@@ -31,6 +31,7 @@ import type { StartPage } from "./protocol/start";
 import { takeLinkedView } from "./protocol/token";
 import { Drawing } from "./scene/drawing";
 import { Follow } from "./scene/follow";
+import { frontMarks } from "./scene/front_mark";
 import { isDepthAveragedLayer, isEnsembleLayer } from "./scene/layers";
 import { marks } from "./scene/marks";
 import { Relief } from "./scene/relief";
@@ -139,18 +140,19 @@ function buildPage(page: HTMLElement, twin: Twin): void {
     const open = page.classList.toggle(narrow.matches ? "readings-open" : "readings-closed") === narrow.matches;
     drawer.setAttribute("aria-expanded", String(open));
   } });
-  const narrow = matchMedia("(max-width: 1180px)");
+  const narrow = matchMedia("(max-width: 1000px)");
   const expanded = (): void => drawer.setAttribute("aria-expanded", String(page.classList.contains("readings-open") || (!narrow.matches && !page.classList.contains("readings-closed"))));
   narrow.addEventListener("change", expanded);
   expanded();
-  const badge = twin.scene.reconstruction ? h("span", { class: "badge", title: twin.scene.assumptions.join(" ") }, "Reconstruction, no survey") : null;
+  // In the bar where there is room for it, otherwise over the view: a picture of invented ground never stands alone.
+  const badge = (where: string): HTMLElement | null => (twin.scene.reconstruction ? h("span", { class: `badge ${where}`, title: twin.scene.assumptions.join(" ") }, "Reconstruction, no survey") : null);
   const wordmark = twin.place.available && twin.place.role === "controller" ? h("button", { type: "button", class: "wordmark", title: "Start page: other scenes and saved sessions", onclick: () => (location.hash = "start") }, "talus")
     : h("span", { class: "wordmark" }, "talus");
   const key = legends(twin, stage, layers);
   const scale = scaleAndCompass(twin, stage, readOut);
-  stage.covers = [bar.camera, bar.show, scale];
+  stage.covers = [bar.camera, bar.show, scale, ...frontMarks(twin, stage, follow)];
   // Legends stand below the picture: over it they would hide debris and houses.
-  const middle = h("main", { class: "middle" }, triggerBanner(twin), h("div", { class: "view" }, stage.element, bar.camera, bar.show, swipeDivider(twin, stage), measuring(twin, stage, drawing), scale, followButton(twin, stage, follow)), key);
+  const middle = h("main", { class: "middle" }, triggerBanner(twin), h("div", { class: "view" }, stage.element, bar.camera, bar.show, swipeDivider(twin, stage), scale, h("div", { class: "view-foot" }, measuring(twin, stage, drawing), followButton(twin, stage, follow), badge("over"))), key);
   // Names of the two views stand below the bars, which wrap on a narrow page, and so does the ground in a plan. On a phone only the camera's is there.
   const bars = new ResizeObserver(() => {
     const below = bar.show.offsetHeight > 0 ? bar.show.offsetTop + bar.show.offsetHeight : bar.camera.offsetTop + bar.camera.offsetHeight;
@@ -160,7 +162,7 @@ function buildPage(page: HTMLElement, twin: Twin): void {
   });
   for (const element of [bar.show, stage.element]) bars.observe(element);
   page.replaceChildren(
-    h("header", { class: "topbar" }, setup, wordmark, h("h1", {}, twin.scene.title), badge, h("span", { class: "spring" }),
+    h("header", { class: "topbar" }, setup, wordmark, h("h1", {}, twin.scene.title), badge("aside"), h("span", { class: "spring" }),
       people(twin, () => presentView(twin, stage)), sessionButton(twin), ...exportButtons(twin, stage, picture), button("Help", { icon: "help", bare: true, class: "bare help", title: "Help and shortcuts (?)", onclick: help }), drawer),
     alarmBanner(twin),
     controls(twin, drawing),

@@ -72,6 +72,15 @@ export async function startServer(command) {
   };
 }
 
+const types = { js: "text/javascript", css: "text/css", html: "text/html", svg: "image/svg+xml" };
+/** Answers requests for the page's files from a folder. */
+export async function serveFrom(page, folder) {
+  await page.route((url) => !url.pathname.startsWith("/api"), (route) => {
+    const path = join(folder, new URL(route.request().url()).pathname.replace(/\/$/, "/index.html"));
+    return existsSync(path) ? route.fulfill({ body: readFileSync(path), contentType: types[path.split(".").at(-1)] }) : route.continue();
+  });
+}
+
 export class Run {
   passed = 0;
   failed = 0;
@@ -111,8 +120,8 @@ export class Run {
       await this.last?.screenshot({ path: join(this.output, `failed-${this.failed}.png`), timeout: 30_000 }).catch(() => {});
     }
   }
-  /** finest: with the whole mesh of the ground; a coarser one is drawn in a fraction of the time. look: natural ones take far longer to draw without a graphics card. edits: how runs that have begun are edited; null: not chosen yet. touch: as on a phone. late: which texts of the server come late, as from a busy one. scale: pixels of the screen per pixel of the page. prepare: called with the page before it loads. */
-  async open(link, { width = 1280, height = 720, reduced = true, name, finest = false, edits = "now", look = "scientific", touch = false, late, scale = 1, prepare } = {}) {
+  /** finest: with the whole mesh of the ground; a coarser one is drawn in a fraction of the time. look: natural ones take far longer to draw without a graphics card. edits: how runs that have begun are edited; null: not chosen yet. touch: as on a phone. late: which texts of the server come late, as from a busy one. scale: pixels of the screen per pixel of the page. opening: with the first view of the scene; otherwise the whole ground is shown, where places are at the same shares of the view whatever the scene holds. prepare: called with the page before it loads. TALUS_SITE=FOLDER: with another build of the page than the program's. */
+  async open(link, { width = 1280, height = 720, reduced = true, name, finest = false, edits = "now", look = "scientific", touch = false, late, scale = 1, opening = false, prepare } = {}) {
     const context = await this.browser.newContext({ viewport: { width, height }, deviceScaleFactor: scale, reducedMotion: reduced ? "reduce" : "no-preference", acceptDownloads: true, hasTouch: touch, isMobile: touch });
     const page = await context.newPage();
     if (name) await page.addInitScript((n) => localStorage.setItem("talus-name", n), name);
@@ -135,12 +144,14 @@ export class Run {
         toServer.onMessage((message) => (typeof message === "string" && late.test(message) ? setTimeout(() => toPage.send(message), 1000) : toPage.send(message)));
       });
     }
+    if (process.env.TALUS_SITE) await serveFrom(page, process.env.TALUS_SITE);
     await prepare?.(page);
     const begun = Date.now();
     await page.goto(link);
     await shows(page, () => window.talusStats?.frames > 0 && document.querySelector(".transport"), "the first picture");
     page.firstPicture_ms = Date.now() - begun;
     await shows(page, () => !document.querySelector(".connection:not([hidden])"), "the connection");
+    if (!opening) await page.evaluate(() => document.querySelector("[aria-label=Fit]").click());
     this.last = page;
     return page;
   }

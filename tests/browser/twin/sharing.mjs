@@ -132,11 +132,11 @@ export async function testSharing(run) {
       });
       assert.deepEqual(overlaps, []);
       const drawer = ada.locator(".drawer-switch");
-      if (width < 1180) await drawer.click();
+      if (width <= 1000) await drawer.click();
       await ada.click("[data-tab=balance]");
       await ada.locator("caption:has-text('Mass balance')").waitFor();
       await run.shot(ada, `17-size-${width}`);
-      if (width < 1180) await drawer.click();
+      if (width <= 1000) await drawer.click();
     });
   }
 

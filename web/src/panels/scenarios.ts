@@ -85,9 +85,9 @@ function scenarioRow(twin: Twin, name: ScenarioName): HTMLElement {
     title.textContent = setup.value?.name || `Scenario ${name}`;
     apart.textContent = name === "A" || said.length > 0 ? said.join(", ") : "Same as A";
     apart.hidden = apart.textContent === "";
-    choose.title = [apart.textContent, changes].filter(Boolean).join("\n");
     // No further line: what is below must not move while it is clicked.
     status.textContent = state.value ? `${standingText(state.value)}${changes ? ", changed" : ""}` : "";
+    choose.title = [status.textContent, apart.textContent, changes].filter(Boolean).join("\n");
     choose.setAttribute("aria-pressed", String(twin.edited.value === name));
     row.classList.toggle("shown", twin.shown.value.includes(name));
     rename.disabled = end.disabled = twin.hindrance !== null;

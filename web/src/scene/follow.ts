@@ -1,5 +1,6 @@
 // Where the camera is to be: at first a view of what is released and the valley below, then the front on its way down, until
 // somebody moves the camera. It keeps one direction and glides: turning, zooming and jerks make people ill.
+import type { ScenarioName } from "../protocol/frame";
 import type { Place } from "../protocol/messages";
 import { watchAll } from "../state/cell";
 import type { Twin } from "../state/twin";
@@ -37,17 +38,17 @@ export class Follow {
     });
   }
 
-  /** Local place of the front of the scenario that is edited, at the time on display; null: nothing has moved yet. */
-  front(): Place | null {
+  /** Local place of the front of a scenario at the time on display; null: nothing has moved yet. */
+  front(name: ScenarioName = this.twin.edited.value): Place | null {
     const { twin, stage } = this;
-    const state = twin.shownState();
+    const state = twin.shownState(name);
     if (!state || state.time_s <= 0) return null;
     const at = state.front_chainage_m === null ? null : placeOnPath(twin.scene, state.front_chainage_m);
-    return at ? stage.relief.local(...at.at) : this.lowestDebris();
+    return at ? stage.relief.local(...at.at) : this.lowestDebris(name);
   }
   /** Without a flow path: the lowest ground under debris. */
-  private lowestDebris(): Place | null {
-    const frame = this.stage.views.get(this.twin.edited.value)?.clock.next;
+  private lowestDebris(name: ScenarioName): Place | null {
+    const frame = this.stage.views.get(name)?.clock.next;
     if (!frame) return null;
     const { relief, twin } = this;
     const { map } = twin.scene;
@@ -73,19 +74,14 @@ export class Follow {
     const { rig } = this.stage;
     if (this.stage.filming) return;
     const front = this.front();
-    if (rig.mode !== "follow") {
-      if (rig.untouched && !this.begun) rig.put(this.opening());
-      this.begun ||= front !== null;
-      return;
-    }
-    const view = front === null ? this.opening() : this.towards(front);
+    const follows = rig.mode === "follow";
+    const view = front === null || !follows ? this.opening() : this.towards(front);
     // What is known of the scene comes bit by bit; who comes later sees the front at once.
-    const early = rig.untouched && (!this.placed || (front === null && !this.begun));
-    this.begun ||= front !== null;
-    if (early) {
+    if (rig.untouched && (!this.placed || (front === null && !this.begun))) {
       rig.put(view);
       this.placed = this.twin.now.setup.value !== null && this.twin.now.state.value !== null;
     }
+    this.begun ||= front !== null;
     rig.aim(view);
   }
 

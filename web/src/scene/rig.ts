@@ -2,6 +2,8 @@
 import { MOUSE, OrthographicCamera, PerspectiveCamera, Spherical, TOUCH, Vector3 } from "three";
 import { OrbitControls } from "three/examples/jsm/controls/OrbitControls.js";
 import type { Place } from "../protocol/messages";
+import { frameOf } from "./framing";
+import { glide } from "./glide";
 import type { Relief } from "./relief";
 
 export type CameraMode = "orbit" | "fly" | "follow" | "plan";
@@ -13,11 +15,6 @@ const visitTilt = (35 * Math.PI) / 180;
 
 /** Less is a click of a hand that is not quite still, px. */
 const dragged_px = 5;
-/** How hard a camera that follows is drawn to its place, 1/s: it comes to rest in some three seconds, without overshooting. */
-const pull_hz = 1.3;
-/** No opening view is nearer. */
-const nearest_m = 60;
-
 const flyKeys = new Set(["KeyW", "KeyA", "KeyS", "KeyD", "KeyQ", "KeyE"]);
 
 export class Rig {
@@ -261,26 +258,7 @@ export class Rig {
   }
   /** The nearest view from a direction that has all places in it, below what covers its upper edge. */
   frame(places: readonly Place[], heading: number, tilt: number): Viewpoint {
-    const away = new Vector3(Math.cos(heading) * Math.cos(tilt), Math.sin(heading) * Math.cos(tilt), Math.sin(tilt));
-    const right = new Vector3(-Math.sin(heading), Math.cos(heading), 0);
-    const up = new Vector3().crossVectors(away, right);
-    const tall = this.halfTangent, wide = tall * this.perspective.aspect;
-    const [lowest, highest] = [-0.86, 0.86 - 2 * this.covered];
-    const target = places.reduce((sum, p) => sum.add(new Vector3(...p)), new Vector3()).divideScalar(Math.max(1, places.length));
-    let distance = 2 * Math.max(...places.map((p) => target.distanceTo(new Vector3(...p))), nearest_m);
-    // What is nearer to the camera is larger: the extent in the picture depends on the distance, so that it is found step by step.
-    for (let k = 0; k < 24; ++k) {
-      let [left, farRight, low, high] = [Infinity, -Infinity, Infinity, -Infinity];
-      for (const place of places) {
-        const d = new Vector3(...place).sub(target);
-        const depth = Math.max(0.1 * distance, distance - d.dot(away));
-        const [x, y] = [d.dot(right) / depth / wide, d.dot(up) / depth / tall];
-        [left, farRight, low, high] = [Math.min(left, x), Math.max(farRight, x), Math.min(low, y), Math.max(high, y)];
-      }
-      target.addScaledVector(right, ((left + farRight) / 2) * wide * distance).addScaledVector(up, ((low + high) / 2 - (lowest + highest) / 2) * tall * distance);
-      distance = Math.max(nearest_m, distance * Math.max((farRight - left) / 1.72, (high - low) / (highest - lowest)));
-    }
-    return { position: target.clone().addScaledVector(away, distance).toArray(), target: target.toArray() };
+    return frameOf(places, heading, tilt, { tall: this.halfTangent, wide: this.halfTangent * this.perspective.aspect, covered: this.covered });
   }
 
   private key(event: KeyboardEvent): void {
@@ -349,8 +327,8 @@ export class Rig {
   }
   /** Both ends of the line of sight are drawn to their places as by damped springs: no jerk when the front changes its pace. False once there. */
   private glide(to: Viewpoint, seconds: number): boolean {
-    const rest = spring(this.perspective.position, to.position, this.drift.position, seconds);
-    return spring(this.controls.target, to.target, this.drift.target, seconds) || rest;
+    const moving = glide(this.perspective.position, to.position, this.drift.position, seconds);
+    return glide(this.controls.target, to.target, this.drift.target, seconds) || moving;
   }
   private fly(seconds: number): void {
     const ahead = this.controls.target.clone().sub(this.camera.position);
@@ -373,18 +351,4 @@ export class Rig {
     const floor = this.relief.at(this.camera.position.x + ox, this.camera.position.y + oy) - oz + 1.7;
     if (this.camera.position.z < floor) this.camera.position.z = floor;
   }
-}
-
-/** Moves a place by critical damping, exactly for any duration; false once it is there. */
-function spring(at: Vector3, to: Place, speed: Vector3, seconds: number): boolean {
-  const fade = Math.exp(-pull_hz * seconds);
-  let moving = false;
-  for (const axis of ["x", "y", "z"] as const) {
-    const gap = at[axis] - to[axis === "x" ? 0 : axis === "y" ? 1 : 2];
-    const held = speed[axis] + pull_hz * gap;
-    if (Math.abs(gap) > 0.02 || Math.abs(speed[axis]) > 0.02) moving = true;
-    at[axis] += (gap + held * seconds) * fade - gap;
-    speed[axis] = (speed[axis] - pull_hz * held * seconds) * fade;
-  }
-  return moving;
 }

@@ -323,7 +323,7 @@ export class Stage {
   private covered(left: number, top: number): Box[] {
     if (!this.element.isConnected) return [];
     const own = this.canvas.getBoundingClientRect();
-    return this.covers.filter((e) => !e.hidden).flatMap((element) => [...(element.classList.contains("bar") ? [element] : element.children)]).map((element) => {
+    return this.covers.filter((e) => !e.hidden).flatMap((element) => [...(element.matches(".bar, .front-mark") ? [element] : element.children)]).map((element) => {
       const box = element.getBoundingClientRect();
       return [box.left - own.left - left, box.top - own.top - top, box.right - own.left - left, box.bottom - own.top - top];
     });

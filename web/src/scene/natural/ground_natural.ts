@@ -106,7 +106,7 @@ const head = /* glsl */ `
     vec4 fine = mix(c, d, abs(2.0 * first - 1.0));
     float fast = smoothstep(1.5, 9.0, flow.y);
     float thick = 1.0 - exp(-flow.x / 0.2);
-    vec3 mud = mix(vec3(0.040, 0.028, 0.017), vec3(0.013, 0.0085, 0.0050), thick);
+    vec3 mud = mix(vec3(0.046, 0.029, 0.015), vec3(0.020, 0.0112, 0.0052), thick);
     mud *= 0.8 + 0.4 * fine.z;
     float crests = 0.55 * fast * smoothstep(0.56, 0.74, 0.6 * lumps.z + 0.4 * fine.z);
     mud = mix(mud, vec3(0.25, 0.19, 0.125), crests);
@@ -168,10 +168,10 @@ const light = /* glsl */ `
       // Mud scatters what it mirrors: broad lights instead of sharp ones, and a brown cast, since the blue of the sky on brown is purple.
       float gloss = mix(90.0, 22.0, natural.mud);
       float grazing = pow(1.0 - max(dot(worldNormal, towards), 0.0), 5.0);
-      float mirror = mix(0.05 + 0.6 * grazing, 0.022 + 0.35 * grazing, natural.mud);
+      float mirror = mix(0.05 + 0.6 * grazing, 0.018 + 0.3 * grazing, natural.mud);
       float spot = pow(max(dot(worldNormal, middle), 0.0), gloss) * (gloss + 8.0) / 25.0;
-      vec3 film = mix(vec3(1.0), vec3(1.0, 0.80, 0.56), natural.mud);
-      outgoingLight += natural.wet * film * (lit * facing * uSunLight * spot * 0.06 + naturalOpen * mirror * skyTowards(reflect(-towards, worldNormal)));
+      vec3 film = mix(vec3(1.0), vec3(1.0, 0.70, 0.42), natural.mud);
+      outgoingLight += natural.wet * film * (lit * facing * uSunLight * spot * mix(0.06, 0.16, natural.mud) + naturalOpen * mirror * skyTowards(reflect(-towards, worldNormal)));
     }
     outgoingLight = developed(throughAir(outgoingLight, sight));
   }
