@@ -22,6 +22,7 @@
 
 #include "core/isolation.hpp"
 #include "core/try.hpp"
+#include "core/utf8.hpp"
 #include "geo/foreign.hpp"
 #include "geo/foreign_data.hpp"
 #include "geo/gdal.hpp"
@@ -333,13 +334,14 @@ Status ForeignReading::read_layers(GDALDataset& data) {
         OGRLayer* layer = data.GetLayer(k);
         OGRFeatureDefn& columns = *layer->GetLayerDefn();
         if (columns.GetGeomFieldCount() == 0) continue;
-        ForeignLayer one{layer->GetName(), "", {}};
+        ForeignLayer one{to_utf8(layer->GetName()), "", {}};
         const OGRSpatialReference* reference = layer->GetSpatialRef();
         TALUS_ASSIGN(one.crs, crs_of(reference));
         for (int f = 0; f < columns.GetFieldCount(); ++f) {
             const OGRFieldDefn& field = *columns.GetFieldDefn(f);
             const OGRFieldType type = field.GetType();
-            one.fields.push_back({field.GetNameRef(), type != OFTInteger && type != OFTInteger64 && type != OFTReal});
+            one.fields.push_back(
+                {to_utf8(field.GetNameRef()), type != OFTInteger && type != OFTInteger64 && type != OFTReal});
         }
         bool other_way = false;
         if (reference != nullptr) {
@@ -386,7 +388,7 @@ Status ForeignReading::read_layer(OGRLayer& layer, const std::vector<Field>& fie
             Attribute value;
             if (feature->IsFieldSetAndNotNull(field) != 0) {
                 if (fields[k].is_text) {
-                    value = std::string(feature->GetFieldAsString(field));
+                    value = to_utf8(feature->GetFieldAsString(field));
                 } else if (const double x = feature->GetFieldAsDouble(field); std::isfinite(x)) {
                     value = x;
                 }

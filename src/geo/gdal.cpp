@@ -9,6 +9,8 @@
 #include <cpl_error.h>
 #include <fmt/format.h>
 
+#include "core/utf8.hpp"
+
 namespace talus::geo {
 
 namespace {
@@ -17,7 +19,7 @@ std::string one_line(std::string text) {
     std::replace_if(
         text.begin(), text.end(), [](unsigned char c) { return std::iscntrl(c) != 0; }, ' ');
     while (!text.empty() && (text.back() == ' ' || text.back() == '.')) text.pop_back();
-    return text;
+    return to_utf8(text);  // a message can quote the file
 }
 
 bool has_extension(const std::string& file, const std::string& extension) {

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include "core/try.hpp"
+#include "core/utf8.hpp"
 #include "geo/mesh_faces.hpp"
 
 namespace talus::geo {
@@ -28,6 +29,7 @@ class ObjReader {
                 TALUS_TRY(close_building());
                 name_.clear();
                 std::getline(words >> std::ws, name_);
+                name_ = to_utf8(name_);
                 while (!name_.empty() && (name_.back() == '\r' || name_.back() == ' ')) name_.pop_back();
             }
         }

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <memory>
@@ -20,6 +21,12 @@ using Dimensions = std::vector<std::shared_ptr<GDALDimension>>;
 const GDALExtendedDataType& number() {
     static const GDALExtendedDataType type = GDALExtendedDataType::Create(GDT_Float64);
     return type;
+}
+
+std::vector<double> centres(double first, double cell, int count) {
+    std::vector<double> values(static_cast<std::size_t>(count));
+    for (std::size_t k = 0; k < values.size(); ++k) values[k] = first + (static_cast<double>(k) + 0.5) * cell;
+    return values;
 }
 
 /// A file being written. After the first failure, which GDAL reports, nothing more is written.
@@ -69,7 +76,7 @@ class NetcdfFile {
         if (!array) return nullptr;
         // The conventions describe systems on the globe alone: with a local one there are just metres.
         const bool on_globe = reference.IsEmpty() == 0 && reference.IsLocal() == 0;
-        if (on_globe && !array->SetSpatialRef(&reference)) return nullptr;
+        if (on_globe && !refer(*array, reference)) return nullptr;
         const bool described =
             array->SetNoDataValue(std::nan("")) && array->SetUnit(unit) && write_attributes(*array, attributes);
         return described ? array : nullptr;
@@ -84,16 +91,59 @@ class NetcdfFile {
     }
     GDALGroup& root() { return *root_; }
 
+    /// Writes the latitudes and longitudes of cells where the reference system needs them (`refer`).
+    bool places(const Dimensions& plan, const OGRSpatialReference& reference, const GridGeometry& g) {
+        if (!by_wkt_) return true;
+        const std::unique_ptr<OGRSpatialReference> base(reference.CloneGeogCS());
+        if (!base) return false;
+        base->SetAxisMappingStrategy(OAMS_TRADITIONAL_GIS_ORDER);
+        const std::unique_ptr<OGRCoordinateTransformation> transformation(
+            OGRCreateCoordinateTransformation(&reference, base.get()));
+        const auto lon = root_->CreateMDArray("lon", plan, number(), nullptr);
+        const auto lat = root_->CreateMDArray("lat", plan, number(), nullptr);
+        if (!transformation || !lon || !lat ||
+            !write_attributes(*lon, {{"standard_name", "longitude"}, {"units", "degrees_east"}}) ||
+            !write_attributes(*lat, {{"standard_name", "latitude"}, {"units", "degrees_north"}})) {
+            return false;
+        }
+        std::vector<double> x, y(static_cast<std::size_t>(g.columns));
+        for (int row = 0; row < g.rows; ++row) {
+            x = centres(g.x_min, g.cell, g.columns);
+            std::fill(y.begin(), y.end(), g.centre(0, row).y);
+            if (transformation->Transform(g.columns, x.data(), y.data()) == 0) return false;
+            const GUInt64 start[] = {static_cast<GUInt64>(row), 0};
+            const std::size_t count[] = {1, x.size()};
+            if (!lon->Write(start, count, nullptr, nullptr, number(), x.data()) ||
+                !lat->Write(start, count, nullptr, nullptr, number(), y.data())) {
+                return false;
+            }
+        }
+        return true;
+    }
+
   private:
+    /// Says in which reference system an array is. The conventions know some projections. Where GDAL finds none of
+    /// them, as for oblique Mercator systems and Krovak, a variable holds the system as WKT alone; the cells then need
+    /// their latitudes and longitudes (`places`), by which any program finds its way.
+    bool refer(GDALMDArray& array, const OGRSpatialReference& reference) {
+        if (!by_wkt_ && array.SetSpatialRef(&reference)) return true;
+        if (!by_wkt_) {
+            by_wkt_ = true;
+            const char* const options[] = {"FORMAT=WKT2_2019", nullptr};
+            char* wkt = nullptr;
+            const bool exported = reference.exportToWkt(&wkt, options) == OGRERR_NONE;
+            const std::string text = exported ? wkt : "";
+            CPLFree(wkt);
+            const auto crs = root_->CreateMDArray("crs", {}, GDALExtendedDataType::Create(GDT_Int32), nullptr);
+            if (!exported || !crs || !write_attributes(*crs, {{"crs_wkt", text}, {"spatial_ref", text}})) return false;
+        }
+        return write_attributes(array, {{"grid_mapping", "crs"}, {"coordinates", "lat lon"}});
+    }
+
     std::unique_ptr<GDALDataset, GDALDatasetUniquePtrDeleter> data_;
     std::shared_ptr<GDALGroup> root_;
+    bool by_wkt_ = false;
 };
-
-std::vector<double> centres(double first, double cell, int count) {
-    std::vector<double> values(static_cast<std::size_t>(count));
-    for (std::size_t k = 0; k < values.size(); ++k) values[k] = first + (static_cast<double>(k) + 0.5) * cell;
-    return values;
-}
 
 bool write_rows(GDALMDArray& array, const std::vector<GUInt64>& start, const GridGeometry& g, const float* values) {
     std::vector<std::size_t> count(start.size(), 1);
@@ -134,6 +184,7 @@ Result<bool> write_file(const std::string& path, const SeriesFile& series, const
     const auto ground = file.map("terrain", {y, x}, "m", reference,
                                  {{"standard_name", "surface_altitude"}, {"long_name", "terrain before the run"}});
     if (!ground || !write_rows(*ground, {0, 0}, g, terrain.values.data())) return false;
+    if (!file.places({y, x}, reference, g)) return false;
     std::vector<float> frame(g.size());
     for (const RasterSeries& quantity : quantities) {
         const auto array = file.map(quantity.name, {time, y, x}, quantity.unit, reference,

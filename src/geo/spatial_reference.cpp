@@ -8,6 +8,7 @@
 #include <cpl_conv.h>
 #include <fmt/format.h>
 
+#include "core/utf8.hpp"
 #include "geo/gdal.hpp"
 #include "geo/latitude.hpp"
 
@@ -62,9 +63,9 @@ Crs to_crs(const OGRSpatialReference& reference) {
     plan.StripVertical();
     const char* const options[] = {"FORMAT=WKT2_2019", nullptr};
     char* wkt = nullptr;
-    if (plan.exportToWkt(&wkt, options) == OGRERR_NONE) crs.wkt = wkt;
+    if (plan.exportToWkt(&wkt, options) == OGRERR_NONE) crs.wkt = to_utf8(wkt);
     CPLFree(wkt);
-    if (const char* name = plan.GetName(); name != nullptr) crs.name = name;
+    if (const char* name = plan.GetName(); name != nullptr) crs.name = to_utf8(name);
     const char* authority = plan.GetAuthorityName(nullptr);
     const char* code = plan.GetAuthorityCode(nullptr);
     if (authority != nullptr && code != nullptr && std::string(authority) == "EPSG") {

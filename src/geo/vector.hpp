@@ -21,23 +21,38 @@ struct PolygonFeature {
 
 struct PolygonLayer {
     std::vector<PolygonFeature> features;
-    std::string reprojection;  ///< "reprojected from EPSG:4326 (WGS 84) to EPSG:2326 (...)", or empty: same CRS
+    std::string reprojection;       ///< "reprojected from EPSG:4326 (WGS 84) to EPSG:2326 (...)", or empty: same CRS
+    bool encoding_assumed = false;  ///< some text was not UTF-8 and was read as Windows-1252
+};
+
+/// A line in the terrain's CRS; several connected parts are joined.
+struct LineFeature {
+    std::vector<PlanPoint> points;
+    std::string name;  ///< its attribute "name", in any case; empty: none
 };
 
 struct LineLayer {
+    std::vector<LineFeature> features;
+    std::string reprojection;
+};
+
+struct SingleLine {
     std::vector<PlanPoint> points;
     std::string reprojection;
 };
 
 /// Reads polygons from GeoJSON, GeoPackage, Shapefile or any other OGR source; `layer` empty: the only layer. Vectors
-/// are reprojected to `terrain_crs`, with a note. Errors: missing file, a folder that is no data source, no such layer
-/// or several without a name, empty layer, other geometry, missing CRS, self-intersecting polygon (names the feature
-/// and the place).
+/// are reprojected to `terrain_crs`, with a note; all text is UTF-8. Errors: missing file, a folder that is no data
+/// source, no such layer or several without a name, empty layer, other geometry, missing CRS, self-intersecting polygon
+/// (names the feature and the place).
 [[nodiscard]] Result<PolygonLayer> read_polygons(const std::string& file, const std::string& layer,
                                                  const Crs& terrain_crs);
 
-/// Reads one line (the first feature; several connected parts are joined). Errors as above.
-[[nodiscard]] Result<LineLayer> read_line(const std::string& file, const std::string& layer, const Crs& terrain_crs);
+/// Reads lines; all text is UTF-8. Errors as above.
+[[nodiscard]] Result<LineLayer> read_lines(const std::string& file, const std::string& layer, const Crs& terrain_crs);
+
+/// Reads a layer with a single line. Errors as above, and: it has several (says how many, and how one is taken out).
+[[nodiscard]] Result<SingleLine> read_line(const std::string& file, const std::string& layer, const Crs& terrain_crs);
 
 /// A column of a vector layer to write.
 struct Field {

@@ -7,7 +7,9 @@
 #include <ogr_geometry.h>
 #include <ogrsf_frmts.h>
 
+#include "core/lower_case.hpp"
 #include "core/try.hpp"
+#include "core/utf8.hpp"
 #include "geo/gdal.hpp"
 #include "geo/spatial_reference.hpp"
 #include "geo/vector.hpp"
@@ -122,8 +124,14 @@ std::string feature_label(GIntBig number, const OGRFeature& feature) {
     return fmt::format("feature {} (fid {})", number, feature.GetFID());
 }
 
-std::map<std::string, Attribute> attributes_of(const OGRFeature& feature) {
+/// `encoding_assumed` becomes true where text is not UTF-8, as that of a .dbf without .cpg.
+std::map<std::string, Attribute> attributes_of(const OGRFeature& feature, bool& encoding_assumed) {
     std::map<std::string, Attribute> attributes;
+    const auto text = [&](const char* written) {
+        std::string valid = to_utf8(written);
+        encoding_assumed = encoding_assumed || valid != written;
+        return valid;
+    };
     for (int i = 0; i < feature.GetFieldCount(); ++i) {
         const OGRFieldDefn* field = feature.GetFieldDefnRef(i);
         Attribute value;
@@ -135,12 +143,22 @@ std::map<std::string, Attribute> attributes_of(const OGRFeature& feature) {
                     if (const double number = feature.GetFieldAsDouble(i); std::isfinite(number)) value = number;
                     break;
                 default:
-                    value = std::string(feature.GetFieldAsString(i));
+                    value = text(feature.GetFieldAsString(i));
             }
         }
-        attributes[field->GetNameRef()] = value;
+        attributes[text(field->GetNameRef())] = value;
     }
     return attributes;
+}
+
+/// The feature's attribute "name", in any case; empty: it has none.
+std::string name_of(const OGRFeature& feature) {
+    bool ignored = false;
+    for (const auto& [key, value] : attributes_of(feature, ignored)) {
+        const auto* text = std::get_if<std::string>(&value);
+        if (lower_case(key) == "name" && text != nullptr) return *text;
+    }
+    return "";
 }
 
 /// A flat copy: no curves, heights or measures.
@@ -314,7 +332,7 @@ Result<PolygonLayer> read_polygons(const std::string& file, const std::string& l
         TALUS_TRY(transform(file, source, read));
         feature.parts.clear();
         collect_polygons(*read.geometry, feature.parts);
-        feature.attributes = attributes_of(*read.feature);
+        feature.attributes = attributes_of(*read.feature, result.encoding_assumed);
         result.features.push_back(std::move(feature));
     }
     if (result.features.empty()) {
@@ -323,21 +341,39 @@ Result<PolygonLayer> read_polygons(const std::string& file, const std::string& l
     return result;
 }
 
-Result<LineLayer> read_line(const std::string& file, const std::string& layer, const Crs& terrain_crs) {
+Result<LineLayer> read_lines(const std::string& file, const std::string& layer, const Crs& terrain_crs) {
     TALUS_ASSIGN(auto source, open_layer(file, layer, terrain_crs));
+    LineLayer result;
+    result.reprojection = source.reprojection;
     source.layer->ResetReading();
-    TALUS_ASSIGN(auto read, next_feature(file, source, 1));
-    if (!read.feature) {
+    for (GIntBig number = 1;; ++number) {
+        TALUS_ASSIGN(auto read, next_feature(file, source, number));
+        if (!read.feature) break;
+        TALUS_TRY(transform(file, source, read));
+        std::vector<std::vector<PlanPoint>> parts;
+        if (!collect_lines(*read.geometry, parts) || parts.empty()) return wrong_geometry(file, read, "a line");
+        TALUS_ASSIGN(auto line, join(file, read.label, std::move(parts)));
+        if (line.size() < 2) {
+            return Error{fmt::format("{}: {} has a single point, a line needs two", file, read.label)};
+        }
+        result.features.push_back({std::move(line), name_of(*read.feature)});
+    }
+    if (result.features.empty()) {
         return Error{fmt::format("{}: layer \"{}\" has no features", file, source.layer->GetName())};
     }
-    TALUS_TRY(transform(file, source, read));
-    std::vector<std::vector<PlanPoint>> parts;
-    if (!collect_lines(*read.geometry, parts) || parts.empty()) return wrong_geometry(file, read, "a line");
-    TALUS_ASSIGN(auto line, join(file, read.label, std::move(parts)));
-    if (line.size() < 2) {
-        return Error{fmt::format("{}: {} has a single point, a line needs two", file, read.label)};
+    return result;
+}
+
+Result<SingleLine> read_line(const std::string& file, const std::string& layer, const Crs& terrain_crs) {
+    TALUS_ASSIGN(LineLayer lines, read_lines(file, layer, terrain_crs));
+    if (lines.features.size() == 1) {
+        return SingleLine{std::move(lines.features.front().points), lines.reprojection};
     }
-    return LineLayer{std::move(line), source.reprojection};
+    return Error{
+        fmt::format("{}: has {} lines, one is needed; take it out with the number that GIS programs show: "
+                    "ogr2ogr -fid N {} {}{}",
+                    file, lines.features.size(), mended_name(file, "_one", ".gpkg"), shell_quoted(file),
+                    layer.empty() ? "" : " " + shell_quoted(layer))};
 }
 
 }  // namespace talus::geo

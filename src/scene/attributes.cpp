@@ -1,9 +1,8 @@
 #include "scene/attributes.hpp"
 
-#include <exception>
-#include <optional>
-
 #include <fmt/format.h>
+
+#include "scene/parse.hpp"
 
 namespace talus::scene {
 namespace {
@@ -14,27 +13,22 @@ std::string attribute_names(const geo::PolygonLayer& layer) {
     return names.empty() ? "none" : names;
 }
 
-/// The attribute as a number, also from a text column that holds one.
-std::optional<double> number_of(const geo::Attribute& attribute) {
-    if (const auto* number = std::get_if<double>(&attribute)) return *number;
-    const auto* text = std::get_if<std::string>(&attribute);
-    if (!text || text->empty()) return std::nullopt;
-    std::size_t used = 0;
-    try {
-        const double number = std::stod(*text, &used);
-        return used == text->size() ? std::optional(number) : std::nullopt;
-    } catch (const std::exception&) {
-        return std::nullopt;
-    }
-}
+}  // namespace
 
 std::string attribute_text(const geo::Attribute& attribute) {
     if (const auto* number = std::get_if<double>(&attribute)) return fmt::format("{}", *number);
-    if (const auto* text = std::get_if<std::string>(&attribute)) return "\"" + *text + "\"";
+    if (const auto* text = std::get_if<std::string>(&attribute)) return "\"" + one_line(*text, 80) + "\"";
     return "empty";
 }
 
-}  // namespace
+Result<std::optional<double>> number_of(const geo::Attribute& attribute, Dimension dimension) {
+    if (const auto* number = std::get_if<double>(&attribute)) return std::optional(*number);
+    const auto* text = std::get_if<std::string>(&attribute);
+    if (text == nullptr || text->find_first_not_of(' ') == std::string::npos) return std::optional<double>();
+    const Result<double> read = read_quantity(*text, dimension);
+    if (!read) return read.error();
+    return std::optional(*read);
+}
 
 Result<double> read_length(const std::string& file, const geo::PolygonLayer& layer, std::size_t feature,
                            const LengthAttribute& attribute) {
@@ -44,13 +38,14 @@ Result<double> read_length(const std::string& file, const geo::PolygonLayer& lay
         return Error{fmt::format("{}: has no attribute \"{}\"; its attributes: {}", file, attribute.name,
                                  attribute_names(layer))};
     }
-    const std::optional<double> length = number_of(found->second);
-    if (!length || !(*length > 0) || *length > attribute.most) {
-        return Error{fmt::format("{}: feature {} has {} = {}; it must be a {} greater than 0 and at most {:.0f} (m)",
-                                 file, feature + 1, attribute.name, attribute_text(found->second), attribute.what,
-                                 attribute.most)};
+    const Result<std::optional<double>> read = number_of(found->second, Dimension::length);
+    const double length = read && *read ? **read : 0;
+    if (!(length > 0) || length > attribute.most) {
+        return Error{fmt::format("{}: feature {} has {} = {}{}; it must be a {} greater than 0 and at most {:.0f} (m)",
+                                 file, feature + 1, attribute.name, attribute_text(found->second),
+                                 read ? "" : ", where " + read.error().message, attribute.what, attribute.most)};
     }
-    return *length;
+    return length;
 }
 
 }  // namespace talus::scene

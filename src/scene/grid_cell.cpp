@@ -45,8 +45,13 @@ double grid_cell(const Scene& scene) {
 
 std::optional<Lacking> depth_averaged_lacks(const Scene& scene) {
     std::size_t barriers = 0;
+    const auto barrier_section = [&] {
+        const std::size_t number = barriers++;
+        const std::vector<std::size_t>& sections = scene.barrier_sections;
+        return number < sections.size() ? sections[number] : number;  // the live twin adds some that have no section
+    };
     for (const terrain::Building& building : scene.buildings) {
-        const std::string section = building.barrier ? fmt::format("barrier[{}]", barriers++) : "buildings";
+        const std::string section = building.barrier ? fmt::format("barrier[{}]", barrier_section()) : "buildings";
         if (auto lacking = lacking_structure(scene, building, section)) return lacking;
     }
     return {};

@@ -1,54 +1,24 @@
 #include "scene/hydrograph.hpp"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <cstddef>
-#include <filesystem>
-#include <fstream>
-#include <sstream>
 #include <utility>
 
 #include <fmt/format.h>
 
-#include "geo/vector.hpp"
+#include "core/csv_table.hpp"
+#include "core/quantity.hpp"
+#include "core/try.hpp"
 #include "params/fields.hpp"
 #include "scene/load.hpp"
 
 namespace talus::scene {
-namespace {
-
-std::string trimmed(const std::string& text) {
-    const std::size_t first = text.find_first_not_of(" \t\r\"");
-    if (first == std::string::npos) return "";
-    return text.substr(first, text.find_last_not_of(" \t\r\"") - first + 1);
-}
-
-std::vector<std::string> fields_of(const std::string& line) {
-    std::vector<std::string> fields;
-    std::stringstream in(line);
-    for (std::string field; std::getline(in, field, ',');) fields.push_back(trimmed(field));
-    return fields;
-}
-
-bool read_number(const std::string& text, double& value) {
-    const char* end = text.data() + text.size();
-    const auto read = std::from_chars(text.data(), end, value);
-    return read.ec == std::errc() && read.ptr == end && std::isfinite(value);
-}
-
-}  // namespace
 
 Result<std::vector<params::InflowSample>> read_hydrograph(const params::InflowSpec& inflow) {
     const std::string& file = inflow.hydrograph;
-    std::ifstream in(file, std::ios::binary);
-    std::error_code code;
-    if (!in || std::filesystem::is_directory(file, code)) return Error{file + ": no such file, or it cannot be opened"};
-    std::string line;
-    std::getline(in, line);
-    constexpr std::string_view byte_order_mark = "\xEF\xBB\xBF";  // spreadsheets write it before UTF-8
-    if (line.starts_with(byte_order_mark)) line.erase(0, byte_order_mark.size());
-    const std::vector<std::string> header = fields_of(line.substr(0, 1000));
+    TALUS_ASSIGN(CsvTable csv, read_csv_table(file, max_rows));
+    const std::vector<std::string>& header = csv.columns;
     const params::Section& table = params::live_section("hydrograph");
     std::vector<std::pair<const params::Parameter*, std::size_t>> columns;  // and its position in a line
     for (const params::Parameter& column : table.parameters) {
@@ -61,29 +31,27 @@ Result<std::vector<params::InflowSample>> read_hydrograph(const params::InflowSp
         } else if (column.required) {
             return Error{
                 fmt::format("{}:1: there is no column {}; the first line must name time_s, discharge_m3ps and "
-                            "velocity_mps, separated by commas",
+                            "velocity_mps, separated by commas, semicolons or tabs",
                             file, column.key)};
         }
     }
     params::SceneSpec read;
     read.inflows.push_back(inflow);
-    for (std::size_t number = 2; std::getline(in, line); ++number) {
-        if (trimmed(line).empty()) continue;
+    for (const CsvRow& line : csv.rows) {
         const std::size_t row = read.hydrograph.size();
-        if (row >= max_rows) return Error{fmt::format("{}: has more than {} rows", file, max_rows)};
-        const std::vector<std::string> fields = fields_of(line.substr(0, 1000));
         read.hydrograph.emplace_back();
         for (const auto& [column, place] : columns) {
-            const std::string text = place < fields.size() ? fields[place] : "";
-            double value = 0;
-            if (!read_number(text, value) || !problem_with(*column, value).empty()) {
-                return Error{fmt::format("{}:{}: {} = \"{}\" is refused; it must be {}", file, number, column->key,
-                                         one_line(text, 40), allowed_text(*column))};
+            const std::string& text = line.fields[place];
+            const Result<double> value = read_quantity(text, Dimension::none, csv.comma);
+            if (!value || !problem_with(*column, *value).empty()) {
+                const std::string why = value || text.empty() ? "" : ", because " + value.error().message;
+                return Error{fmt::format("{}:{}: {} = \"{}\" is refused{}; it must be {}", file, line.line, column->key,
+                                         one_line(text, 40), why, allowed_text(*column))};
             }
-            column->set(read, row, value);
+            column->set(read, row, *value);
         }
         if (const auto broken = broken_rule(table, read, row, 0)) {
-            return Error{fmt::format("{}:{}: {}{}", file, number, broken->key, broken->text)};
+            return Error{fmt::format("{}:{}: {}{}", file, line.line, broken->key, broken->text)};
         }
     }
     if (read.hydrograph.size() < min_rows) {

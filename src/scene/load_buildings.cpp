@@ -1,6 +1,5 @@
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
 #include <limits>
 #include <utility>
 
@@ -9,6 +8,7 @@
 #include "core/try.hpp"
 #include "geo/mesh.hpp"
 #include "geo/vector.hpp"
+#include "scene/attributes.hpp"
 #include "scene/known_ground.hpp"
 #include "scene/load.hpp"
 #include "scene/polygons.hpp"
@@ -43,12 +43,41 @@ Status check_attribute(const ParsedScene& parsed, const std::string& key, const 
                              parsed.spec.buildings.file, names.empty() ? "none" : names)};
 }
 
-double number_of(const geo::PolygonFeature& feature, const std::string& attribute) {
+geo::Attribute value_of(const geo::PolygonFeature& feature, const std::string& attribute) {
     const auto found = feature.attributes.find(attribute);
-    if (found == feature.attributes.end()) return 0;
-    if (const auto* number = std::get_if<double>(&found->second)) return *number;
-    if (const auto* text = std::get_if<std::string>(&found->second)) return std::strtod(text->c_str(), nullptr);
-    return 0;
+    return found == feature.attributes.end() ? geo::Attribute() : found->second;
+}
+
+/// The pressure that a building stands: its own, that of all, or none. `who`: "feature 3".
+Status read_resistance(const ParsedScene& parsed, const std::string& who, const geo::Attribute& own,
+                       terrain::Building& building) {
+    const params::BuildingsSpec& spec = parsed.spec.buildings;
+    if (spec.resistance) building.resistance.pressure = *spec.resistance;
+    const Result<std::optional<double>> pressure = number_of(own, Dimension::pressure);
+    if (!pressure) {
+        return Error{fmt::format("{}: {}: {} has {} = {}, where {}", parsed.at("buildings.resistance_attribute"),
+                                 spec.file, who, spec.resistance_attribute, attribute_text(own),
+                                 pressure.error().message)};
+    }
+    if (pressure->value_or(0) > 0) building.resistance.pressure = **pressure;
+    return {};
+}
+
+/// Buildings whose height is assumed.
+struct AssumedHeights {
+    std::size_t count = 0;
+    std::size_t not_understood = 0;  ///< of these
+    std::string first;               ///< of those not understood: feature, value and reason
+};
+
+void note_assumed(const AssumedHeights& assumed, Scene& scene) {
+    const params::BuildingsSpec& spec = scene.spec.buildings;
+    if (assumed.count == 0) return;
+    scene.notes.push_back(fmt::format("buildings: the height of {} of {} is assumed to be {:.6g} m", assumed.count,
+                                      scene.buildings.size(), spec.height));
+    if (assumed.not_understood == 0) return;
+    scene.notes.push_back(fmt::format("buildings: {}: {} of these have a {} that is no height, the first of them {}",
+                                      spec.file, assumed.not_understood, spec.height_attribute, assumed.first));
 }
 
 std::string name_of(const geo::PolygonFeature& feature, const std::string& attribute, std::size_t number) {
@@ -135,9 +164,8 @@ Status load_mesh_buildings(const ParsedScene& parsed, Scene& scene, std::size_t&
         }
         const std::string name = attribute_of(mesh, spec.name_attribute);
         building.name = name.empty() ? mesh.name : name;
-        const double resistance = std::strtod(attribute_of(mesh, spec.resistance_attribute).c_str(), nullptr);
-        if (spec.resistance) building.resistance.pressure = *spec.resistance;
-        if (resistance > 0) building.resistance.pressure = resistance;
+        TALUS_TRY(read_resistance(parsed, fmt::format("\"{}\"", one_line(mesh.name, 80)),
+                                  attribute_of(mesh, spec.resistance_attribute), building));
         scene.buildings.push_back(std::move(building));
     }
     if (sunk > 0) {
@@ -159,7 +187,7 @@ Status load_footprints(const ParsedScene& parsed, Scene& scene, std::size_t& out
     TALUS_TRY(check_attribute(parsed, "buildings.height_attribute", spec.height_attribute, *layer));
     TALUS_TRY(check_attribute(parsed, "buildings.name_attribute", spec.name_attribute, *layer));
     TALUS_TRY(check_attribute(parsed, "buildings.resistance_attribute", spec.resistance_attribute, *layer));
-    std::size_t assumed = 0;
+    AssumedHeights assumed;
     for (std::size_t i = 0; i < layer->features.size(); ++i) {
         const geo::PolygonFeature& feature = layer->features[i];
         if (!on_terrain(feature, scene.terrain)) {
@@ -170,26 +198,32 @@ Status load_footprints(const ParsedScene& parsed, Scene& scene, std::size_t& out
         building.name = name_of(feature, spec.name_attribute, i + 1);
         building.footprint = feature.parts;
         static_cast<params::BuildingSpec&>(building) = spec;
-        const double height = number_of(feature, spec.height_attribute);
-        const double resistance = number_of(feature, spec.resistance_attribute);
-        if (spec.resistance) building.resistance.pressure = *spec.resistance;
-        if (resistance > 0) building.resistance.pressure = resistance;
+        const std::string who = fmt::format("feature {}", i + 1);
+        TALUS_TRY(read_resistance(parsed, who, value_of(feature, spec.resistance_attribute), building));
+        const geo::Attribute written = value_of(feature, spec.height_attribute);
+        const Result<std::optional<double>> read = number_of(written, Dimension::length);
+        const double height = read ? read->value_or(0) : 0;
         if (!(height > 0)) {
             building.height_assumed = true;
-            ++assumed;
+            ++assumed.count;
+            if (!read && assumed.not_understood++ == 0) {
+                assumed.first = fmt::format("{}, {}: {}", who, attribute_text(written), read.error().message);
+            }
         } else if (height > highest_building()) {
-            return Error{
-                fmt::format("{}: {}: feature {} (\"{}\") has {} = {:.6g}; it must be a height of at most {:.0f} (m)",
-                            parsed.at("buildings.height_attribute"), spec.file, i + 1, building.name,
-                            spec.height_attribute, height, highest_building())};
+            return Error{fmt::format("{}: {}: {} (\"{}\") has {} = {}; it must be a height of at most {:.0f} (m)",
+                                     parsed.at("buildings.height_attribute"), spec.file, who, building.name,
+                                     spec.height_attribute, attribute_text(written), highest_building())};
         } else {
             building.height = height;
         }
         scene.buildings.push_back(std::move(building));
     }
-    if (assumed > 0) {
-        scene.notes.push_back(fmt::format("buildings: the height of {} of {} is assumed to be {:.6g} m", assumed,
-                                          scene.buildings.size(), spec.height));
+    note_assumed(assumed, scene);
+    if (layer->encoding_assumed) {
+        scene.notes.push_back(
+            fmt::format("buildings: {} holds text that is not UTF-8, read as Windows-1252; a .cpg file beside it, with "
+                        "the name of the encoding, says otherwise",
+                        spec.file));
     }
     place_buildings(scene.terrain, scene.buildings);
     return {};

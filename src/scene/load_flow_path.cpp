@@ -142,7 +142,7 @@ Status load_flow_path(const ParsedScene& parsed, Scene& scene) {
         scene.flow_path_origin = PathOrigin::traced;
         return trace_from_release(parsed, scene);
     }
-    const Result<geo::LineLayer> layer = read_line(spec.file, spec.layer, scene.crs);
+    const Result<geo::SingleLine> layer = read_line(spec.file, spec.layer, scene.crs);
     if (!layer) return Error{parsed.at("flow_path.file") + ": " + layer.error().message};
     record_input("flow path", spec.file, scene);
     if (!layer->reprojection.empty()) scene.notes.push_back("flow path: " + layer->reprojection);

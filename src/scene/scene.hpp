@@ -56,8 +56,9 @@ struct Scene {
     std::vector<BedLayer> bed_layers;
     terrain::Bed bed;  ///< of the layers
     std::vector<terrain::Inflow> inflows;
-    std::optional<ThinnestSource> thinnest;  ///< where solver.target_layers is given
-    std::vector<terrain::Building> buildings;
+    std::optional<ThinnestSource> thinnest;     ///< where solver.target_layers is given
+    std::vector<terrain::Building> buildings;   ///< barriers behind them
+    std::vector<std::size_t> barrier_sections;  ///< of each barrier: index of its section
     terrain::FlowPath flow_path;
     PathOrigin flow_path_origin = PathOrigin::file;
     std::vector<terrain::Gauge> gauges;

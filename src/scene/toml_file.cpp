@@ -1,5 +1,6 @@
 #include "scene/toml_file.hpp"
 
+#include <algorithm>
 #include <cerrno>
 #include <cmath>
 #include <fstream>
@@ -10,32 +11,13 @@
 
 #include "core/input_file.hpp"
 #include "core/try.hpp"
+#include "core/utf8.hpp"
 #include "scene/parse.hpp"
 
 namespace talus::scene {
 namespace {
 
 constexpr std::uintmax_t largest_file = 16 << 20;  // bytes; such a file is a page of text
-
-/// Line of the first byte that is not UTF-8, 0 if there is none.
-std::size_t line_of_invalid_utf8(std::string_view text) {
-    std::size_t line = 1;
-    for (std::size_t i = 0; i < text.size(); ++i) {
-        const auto byte = static_cast<unsigned char>(text[i]);
-        if (byte == '\n') ++line;
-        if (byte < 0x80) continue;
-        const int more = byte >= 0xC2 && byte <= 0xDF   ? 1
-                         : (byte & 0xF0) == 0xE0        ? 2
-                         : byte >= 0xF0 && byte <= 0xF4 ? 3
-                                                        : 0;
-        if (more == 0 || i + more >= text.size()) return line;
-        for (int k = 1; k <= more; ++k) {
-            if ((static_cast<unsigned char>(text[i + k]) & 0xC0) != 0x80) return line;
-        }
-        i += more;
-    }
-    return 0;
-}
 
 Result<std::string> read_text(const std::filesystem::path& file, const std::string& what) {
     const std::string name = file.string();
@@ -56,7 +38,8 @@ Result<std::string> read_text(const std::filesystem::path& file, const std::stri
             return Error{fmt::format("{}: is larger than 16 MB, not a {} file", name, what)};
     }
     if (in.bad()) return Error{name + ": cannot be read to its end"};
-    if (const std::size_t line = line_of_invalid_utf8(text); line > 0) {
+    if (const std::size_t invalid = invalid_utf8(text); invalid != std::string::npos) {
+        const auto line = 1 + std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(invalid), '\n');
         return Error{fmt::format("{}:{}: not UTF-8 text; save the {} file as UTF-8", name, line, what)};
     }
     return text;

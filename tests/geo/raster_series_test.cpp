@@ -127,6 +127,33 @@ TEST(RasterSeries, NetcdfOfALocalSystemHasMetresAlone) {
     EXPECT_EQ(data->GetMetadataItem("depth#grid_mapping"), nullptr);
 }
 
+TEST(RasterSeries, NetcdfOfASystemUnknownToTheConventionsHasWktAndPlaces) {
+    for (const auto& [epsg, x, y, lon, lat] :
+         {std::tuple{2056, 2600000.0, 1200000.0, 7.4386, 46.9511},  // Switzerland: Bern
+          std::tuple{5514, -740000.0, -1050000.0, 14.49, 50.03},    // Czechia: south of Prague
+          std::tuple{23700, 650000.0, 238000.0, 19.04, 47.49}}) {   // Hungary: Budapest
+        const TemporaryFolder folder;
+        const std::string file = folder.file("maps.nc");
+        SeriesFile oblique = series();
+        oblique.geometry.x_min = x;
+        oblique.geometry.y_min = y;
+        oblique.crs = {"", "", epsg};
+        const Status status = write_netcdf_series(file, oblique, Grid<float>(oblique.geometry, 55), {depth()});
+        ASSERT_TRUE(status.ok()) << status.error().message;
+        const GDALDatasetUniquePtr data(GDALDataset::Open(("NETCDF:" + file + ":depth").c_str()));
+        ASSERT_NE(data, nullptr);
+        ASSERT_NE(data->GetSpatialRef(), nullptr) << epsg;
+        EXPECT_STREQ(data->GetSpatialRef()->GetAuthorityCode(nullptr), std::to_string(epsg).c_str());
+        EXPECT_STREQ(data->GetMetadataItem("depth#coordinates"), "lat lon");
+        EXPECT_EQ(row_of(*data, 3, cells.rows - 1)[1], value_of(2, 1, 0));
+        for (const auto& [name, expected] : {std::pair{"lon", lon}, std::pair{"lat", lat}}) {
+            const GDALDatasetUniquePtr places(GDALDataset::Open(("NETCDF:" + file + ":" + name).c_str()));
+            ASSERT_NE(places, nullptr) << name;
+            EXPECT_NEAR(row_of(*places, 1, 0)[0], expected, 0.05) << epsg << ' ' << name;
+        }
+    }
+}
+
 TEST(RasterSeries, FailureNamesTheFileAndLeavesNone) {
     const TemporaryFolder folder;
     RasterSeries broken = depth();

@@ -226,6 +226,53 @@ TEST_F(Vectors, LinePartsAreJoinedWhicheverWayTheyRun) {
     EXPECT_THAT(apart.error().message, HasSubstr("parts that are not connected"));
 }
 
+TEST_F(Vectors, EveryLineOfAFileIsReadOrAllAreRefused) {
+    const std::string file =
+        write({{"LINESTRING (0 0, 0 60)", {"upper"}}, {"LINESTRING (50 0, 50 80, 50 90)", {"lower"}}},
+              {.fields = {{"Name", OFTString}}});
+    const auto lines = read_lines(file, "", without_wkt);
+    ASSERT_TRUE(lines.ok()) << lines.error().message;
+    ASSERT_EQ(lines->features.size(), 2U);
+    EXPECT_EQ(lines->features[0].name, "upper") << "an attribute \"Name\" is one too";
+    EXPECT_EQ(lines->features[1].points.size(), 3U);
+    const auto one = read_line(file, "", without_wkt);
+    ASSERT_FALSE(one.ok());
+    EXPECT_THAT(one.error().message, AllOf(StartsWith(file + ": has 2 lines, one is needed"),
+                                           HasSubstr("ogr2ogr -fid N " + folder_.file("release_one.gpkg"))));
+    const auto mixed = read_lines(write({{"LINESTRING (0 0, 0 60)"}, {"POINT (1 2)"}}), "", without_wkt);
+    ASSERT_FALSE(mixed.ok());
+    EXPECT_THAT(mixed.error().message, HasSubstr("feature 2 (fid 1) is a Point, a line is needed"));
+}
+
+/// A shapefile of a square with a text attribute, whose .dbf has these bytes and says nothing of their encoding.
+std::string shapefile_with_bytes(const TemporaryFolder& folder, const std::string& field, const std::string& value) {
+    const std::string file = test::write_vector(
+        folder.file("a.shp"),
+        {.driver = "ESRI Shapefile", .fields = {{std::string(field.size(), '#'), OFTString}}, .type = wkbPolygon},
+        {{square, {std::string(value.size(), '@')}}});
+    std::filesystem::remove(folder.file("a.cpg"));
+    std::string table = test::read_text(folder.file("a.dbf"));
+    table[29] = 0;  // the code page
+    table.replace(table.find('#'), field.size(), field);
+    table.replace(table.find('@'), value.size(), value);
+    test::write_text(folder.file("a.dbf"), table);
+    return file;
+}
+
+TEST_F(Vectors, TextIsUtf8WhateverTheFileHolds) {
+    const auto latin1 =
+        read_polygons(shapefile_with_bytes(folder_, "Geb\xE4ude", "M\xFCllerh\xFCtte"), "", without_wkt);
+    ASSERT_TRUE(latin1.ok()) << latin1.error().message;
+    EXPECT_TRUE(latin1->encoding_assumed);
+    ASSERT_EQ(latin1->features[0].attributes.count("Gebäude"), 1U);
+    EXPECT_EQ(latin1->features[0].attributes.at("Gebäude"), Attribute("Müllerhütte"));
+
+    const auto utf8 = read_polygons(shapefile_with_bytes(folder_, "name", "Müllerhütte"), "", without_wkt);
+    ASSERT_TRUE(utf8.ok()) << utf8.error().message;
+    EXPECT_FALSE(utf8->encoding_assumed);
+    EXPECT_EQ(utf8->features[0].attributes.at("name"), Attribute("Müllerhütte"));
+}
+
 TEST_F(Vectors, LineIsReprojected) {
     const auto line =
         read_line(write({{"LINESTRING (114.181 22.310606, 114.182 22.312)"}}, {.epsg = 4326}), "", without_wkt);

@@ -48,6 +48,29 @@ TEST_F(InputFiles, AByteOrderMarkBeforeAHydrographIsRead) {
     EXPECT_EQ(load_error(), std::string(loaded));
 }
 
+TEST_F(InputFiles, HydrographsOfSpreadsheetsGiveTheirVolume) {
+    const auto volume = [&](const std::string& hydrograph) {
+        write_inflow(hydrograph);
+        const auto scene = load_scene(folder / "scene.toml");
+        EXPECT_TRUE(scene) << scene.error().message;
+        return scene ? scene->inflows.at(0).volume() : 0;
+    };
+    const std::string plain = "time_s,discharge_m3ps,velocity_mps\n0,0,3\n5,10.5,3\n25,0,3\n";
+    EXPECT_DOUBLE_EQ(volume(plain), 131.25);
+    EXPECT_DOUBLE_EQ(volume("time_s,discharge_m3ps,velocity_mps\n0,0,3\n5,\"10,5\",3\n25,0,3\n"), 131.25);
+    EXPECT_DOUBLE_EQ(volume("time_s;discharge_m3ps;velocity_mps\r\n0;0;3\r\n5;10,500;3\r\n25;0;3\r\n"), 131.25);
+    std::string utf16 = "\xFF\xFE";
+    for (const char c : plain) utf16 += {c, '\0'};
+    EXPECT_DOUBLE_EQ(volume(utf16), 131.25);
+}
+
+TEST_F(InputFiles, FieldsThatNoColumnHasAreRefused) {
+    write_inflow("time_s,discharge_m3ps,velocity_mps\n0,0,3\n5,10,5,3\n25,0,3\n");
+    EXPECT_THAT(load_error(), HasSubstr("h.csv:3: has 4 fields, and the first line names 3 columns"));
+    write_inflow("time_s,discharge_m3ps,velocity_mps\n0,0,3\n5,\"10,500\",3\n25,0,3\n");
+    EXPECT_THAT(load_error(), HasSubstr("h.csv:3: discharge_m3ps = \"10,500\" is refused, because its comma may mark"));
+}
+
 TEST_F(InputFiles, AColumnGivenTwiceIsRefused) {
     write_inflow("time_s,discharge_m3ps,velocity_mps,discharge_m3ps\n0,10,2,20\n10,10,2,20\n");
     EXPECT_THAT(load_error(), HasSubstr("h.csv:1: there are two columns discharge_m3ps; leave one of them out"));

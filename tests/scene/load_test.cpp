@@ -282,6 +282,49 @@ TEST_F(LoadScene, BuildingsTakeHeightAndNameOrSayWhatIsAssumed) {
     EXPECT_THAT(scene.notes, Contains("buildings: the height of 2 of 3 is assumed to be 6 m"));
 }
 
+TEST_F(LoadScene, HeightsWithUnitsAreReadAndOthersAssumed) {
+    write_valley("[buildings]\nfile = \"houses.geojson\"\nheight_attribute = \"height\"\n");
+    const std::vector<std::pair<std::string, double>> heights = {
+        {"12 m", 12}, {"30 ft", 9.144}, {"12,5", 12.5},   {"40'", 12.192}, {"7", 7},  {"1e1", 10},
+        {"9m", 9},    {"", 0},          {"2 storeys", 0}, {"~8", 0},       {"yes", 0}};  // 0: assumed
+    std::vector<std::string> houses;
+    for (const auto& [text, height] : heights) {
+        const double x = 100 + 15 * static_cast<double>(houses.size());
+        houses.push_back(rectangle(x, 90, x + 10, 100, "\"height\": \"" + text + "\""));
+    }
+    write_features("houses.geojson", houses);
+    const Scene scene = loaded();
+    ASSERT_EQ(scene.buildings.size(), heights.size());
+    for (std::size_t k = 0; k < heights.size(); ++k) {
+        const auto& [text, height] = heights[k];
+        EXPECT_EQ(scene.buildings[k].height_assumed, height == 0) << text;
+        EXPECT_NEAR(scene.buildings[k].height, height == 0 ? 6 : height, 1e-9) << text;
+    }
+    EXPECT_THAT(scene.notes, Contains("buildings: the height of 4 of 11 is assumed to be 6 m"));
+    EXPECT_THAT(scene.notes, Contains(AllOf(HasSubstr("houses.geojson: 3 of these have a height that is no height"),
+                                            HasSubstr("feature 9, \"2 storeys\": after its number comes"))));
+}
+
+TEST_F(LoadScene, EveryAttributeIsReadWithItsUnit) {
+    write_valley("[buildings]\nfile = \"houses.geojson\"\nresistance_attribute = \"stands\"\n",
+                 "thickness_attribute = \"d\"");
+    const auto with = [&](const std::string& thickness, const std::string& resistance) {
+        write_features("release.geojson", {rectangle(20, 90, 40, 110, "\"d\": \"" + thickness + "\"")});
+        write_features("houses.geojson", {rectangle(200, 90, 210, 100, "\"stands\": \"" + resistance + "\"")});
+    };
+    with("150 cm", "500 kPa");
+    const Scene scene = loaded();
+    EXPECT_DOUBLE_EQ(scene.releases[0].patches[0].thickness, 1.5);
+    EXPECT_EQ(scene.buildings[0].resistance.pressure, 5e5);
+    with("1,500", "500 kPa");
+    EXPECT_THAT(load_error(), AllOf(HasSubstr("release.geojson: feature 1 has d = \"1,500\", where its comma may"),
+                                    HasSubstr("must be a thickness above 0")));
+    with("1.5", "5 bar");
+    EXPECT_THAT(load_error(), AllOf(HasSubstr("buildings.resistance_attribute: "),
+                                    HasSubstr("houses.geojson: feature 1 has stands = \"5 bar\", where after its "
+                                              "number comes \"bar\"; units are Pa, kPa")));
+}
+
 TEST_F(LoadScene, BuildingsThatCannotBeUsedAreRefused) {
     write_valley("[buildings]\nfile = \"houses.geojson\"\n");
     write_features("houses.geojson", {rectangle(900, 90, 910, 100)});

@@ -14,6 +14,7 @@ namespace {
 
 using testing::AllOf;
 using testing::Contains;
+using testing::ElementsAre;
 using testing::HasSubstr;
 
 class Structures : public SceneFolder {
@@ -57,6 +58,44 @@ TEST_F(Structures, BarriersComeBehindTheBuildings) {
     EXPECT_TRUE(std::isinf(scene.buildings[1].resistance.pressure));
     ASSERT_EQ(scene.buildings[1].barrier->openings.size(), 1U);
     EXPECT_EQ(scene.buildings[1].barrier->openings[0].sill, 1);
+}
+
+TEST_F(Structures, EveryLineOfAFileIsABarrier) {
+    const auto dam_at = [](double x, const std::string& properties) {
+        return fmt::format(R"({{"type": "Feature", "properties": {{{0}}}, "geometry": {{"type": "LineString", )"
+                           R"("coordinates": [[{1}, {2}], [{1}, {3}]]}}}})",
+                           properties, west + x, south + 70, south + 130);
+    };
+    write_valley("[[barrier]]\nname = \"dams\"\nfile = \"dams.geojson\"\nheight_m = 4\nthickness_m = 3\n" + dam() +
+                 "[[barrier_opening]]\nbarrier = \"dams lower\"\nposition_m = 30\nwidth_m = 6\n");
+    write_features("dams.geojson", {dam_at(120, R"("name": "upper")"), dam_at(180, R"("name": "lower")")});
+    const Scene scene = loaded();
+    ASSERT_EQ(scene.buildings.size(), 3U);
+    EXPECT_EQ(scene.buildings[0].name, "dams upper");
+    EXPECT_EQ(scene.buildings[1].name, "dams lower");
+    EXPECT_NEAR(extent_of(scene.buildings[1].footprint[0]).x_min, west + 178.5, 1e-6);
+    EXPECT_EQ(scene.buildings[0].barrier->openings.size(), 0U);
+    EXPECT_EQ(scene.buildings[1].barrier->openings.size(), 1U);
+    EXPECT_EQ(scene.buildings[2].name, "dam");
+    EXPECT_THAT(scene.barrier_sections, ElementsAre(0U, 0U, 1U));
+    EXPECT_THAT(scene.notes, Contains(HasSubstr("holds 2 lines, a barrier each: \"dams upper\", \"dams lower\"")));
+    EXPECT_THAT(load_error({"barrier[1].name=dams lower"}), HasSubstr("barrier[1].name = \"dams lower\" is the name of "
+                                                                      "another barrier too"));
+    write_features("dams.geojson", {dam_at(120, R"("name": "a")"), dam_at(180, R"("name": "a")")});
+    EXPECT_THAT(load_error(), HasSubstr("barriers: \"dams 1\", \"dams 2\", \"dam\""))
+        << "names that are not unique are replaced by numbers";
+}
+
+TEST_F(Structures, OneLineIsNeededForAFlowPathAndForAnInflow) {
+    const std::string line = fmt::format(R"({{"type": "Feature", "properties": {{}}, "geometry": {{"type": )"
+                                         R"("LineString", "coordinates": [[{}, {}], [{}, {}]]}}}})",
+                                         west + 45, south + 95, west + 45, south + 105);
+    write_features("lines.geojson", {line, line});
+    write("surge.csv", "time_s,discharge_m3ps,velocity_mps\n0,1,4\n2,40,6\n");
+    write_valley("[flow_path]\nfile = \"lines.geojson\"\n");
+    EXPECT_THAT(load_error(), AllOf(HasSubstr("flow_path.file: "), HasSubstr("has 2 lines, one is needed")));
+    write_valley("[[inflow]]\nfile = \"lines.geojson\"\nhydrograph = \"surge.csv\"\n");
+    EXPECT_THAT(load_error(), AllOf(HasSubstr("inflow[0].file: "), HasSubstr("has 2 lines, one is needed")));
 }
 
 TEST_F(Structures, ABarrierWithAPassingShareIsANet) {
