@@ -20,7 +20,7 @@ Section declare_release() {
         .live_in({.label = "Thickness", .slider_low = 0.1, .slider_high = 10, .first = 1.5})
         .also_called({"rel_th", "release_thickness", "release_depth", "d0"});
     s.text("thickness_attribute", &ReleaseSpec::thickness_attribute, "one of the other three is given",
-           "Attribute of the polygons that holds their thickness in metres.");
+           "Attribute of the polygons that holds their thickness in metres, or text with its unit such as '5 ft'.");
     s.path("thickness_raster", &ReleaseSpec::thickness_raster, "one of the other three is given",
            "Raster of thickness in metres, in the terrain's reference system (GeoTIFF, .asc); without file it is the "
            "release area too.");
@@ -60,7 +60,7 @@ Section declare_bed() {
                    "Uniform depth of the bed, vertical; debris entrains no more.")
         .live_in({.label = "Depth", .slider_low = 0.1, .slider_high = 5.1, .first = 1});
     s.text("depth_attribute", &BedSpec::depth_attribute, "one of the other two is given",
-           "Attribute of the polygons that holds their depth in metres.");
+           "Attribute of the polygons that holds their depth in metres, or text with its unit such as '5 ft'.");
     s.path("depth_raster", &BedSpec::depth_raster, "one of the other two is given",
            "Raster of depth in metres, in the terrain's reference system.");
     s.choice("law", &BedSpec::law, {"growth", "shear"},

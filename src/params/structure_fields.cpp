@@ -13,15 +13,17 @@ Section declare_buildings() {
         "north; the translation of a node may bring it to its place.");
     s.text("layer", &BuildingsSpec::layer, "the only layer", "Layer of the file.");
     s.text("height_attribute", &BuildingsSpec::height_attribute, "every building has the default height",
-           "Attribute that holds a building's height above the mean ground of its footprint in metres.");
+           "Attribute that holds a building's height above the mean ground of its footprint in metres, or text with "
+           "its unit such as '30 ft'.");
     s.text("name_attribute", &BuildingsSpec::name_attribute, "\"building N\"",
            "Attribute that holds a building's name.");
     s.key("default_height_m", "m", &BuildingsSpec::height, above_to(0, 1000),
           "Height above the ground where the attribute is absent, empty or not above zero; counted as assumed.")
         .assumes("Height of buildings whose data give none")
         .live_in({.label = "Height", .slider_low = 0.5, .slider_high = 40, .first = 6}, "height_m");
-    s.text("resistance_attribute", &BuildingsSpec::resistance_attribute, "every building has resistance_Pa",
-           "Attribute that holds the pressure in Pa that a building withstands.");
+    s.text(
+        "resistance_attribute", &BuildingsSpec::resistance_attribute, "every building has resistance_Pa",
+        "Attribute that holds the pressure in Pa that a building withstands, or text with its unit such as '30 kPa'.");
     s.optional_key(
          "resistance_Pa", "Pa", &BuildingsSpec::resistance, between(1, 1e12), "buildings never fail",
          "Impact pressure (outputs.impact_patch_edge_m) above which a building is destroyed: it is gone from then on.")
@@ -34,7 +36,10 @@ Section declare_barrier() {
     s.text("name", &BarrierSpec::name, "\"barrier N\"", "Name in reports and messages.");
     s.key("line_m", "m", &BarrierSpec::line, anything(),
           "Its line in plan, in the terrain's reference system; at least two places.");
-    s.path("file", &BarrierSpec::file, "line_m is given", "Its line in a file: GeoJSON, GeoPackage, Shapefile.");
+    s.path("file", &BarrierSpec::file, "line_m is given",
+           "Its line in a file: GeoJSON, GeoPackage, Shapefile; several lines are a barrier each, called after this "
+           "one and "
+           "their attribute 'name' or number.");
     s.text("layer", &BarrierSpec::layer, "the only layer", "Layer of the file.");
     s.optional_key("height_m", "m", &BarrierSpec::height, above_to(0, 200), "crest_elevation_m is given",
                    "Height above the ground under the line: the crest follows the ground.")
