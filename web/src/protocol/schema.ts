@@ -74,7 +74,7 @@ export interface BarrierOpeningValues {
   sill_height_m: number;
 }
 
-/** What moves. */
+/** Debris properties. */
 export interface MaterialValues {
   /** Coulomb friction on the ground (tangent of the friction angle), and on buildings and inside unless set apart. */
   friction_coefficient: number;
@@ -88,7 +88,7 @@ export interface MaterialValues {
   turbulent_friction_mps2: number | null;
   /** Laminar drag: flow of thickness h is slowed by 3 nu v / h2 over its whole depth, beside Coulomb and turbulent friction. nu is the kinematic viscosity, dynamic viscosity over density: the viscous term of FLO-2D and HEC-RAS with K = 24. null: none. */
   laminar_viscosity_m2ps: number | null;
-  /** Shear strength that needs no pressure, on the ground and inside: the yield stress of a mud where friction is 0. */
+  /** Shear strength at zero normal stress, on the ground and inside: the yield stress of a mud without friction. */
   cohesion_Pa: number;
   /** r_u, pore pressure over the total normal stress when debris starts: friction on ground, buildings and inside is 1 - r_u of what it is in dry debris. */
   pore_pressure_ratio: number;
@@ -104,7 +104,7 @@ export interface ZoneValues {
   turbulent_friction_mps2: number | null;
   /** Kinematic viscosity of laminar drag on this ground. null: as in [material]. */
   laminar_viscosity_m2ps: number | null;
-  /** Shear strength without pressure between debris and this ground. null: as in [material]. */
+  /** Shear strength at zero normal stress between debris and this ground. null: as in [material]. */
   cohesion_Pa: number | null;
   /** Stems of a forest per square metre that stand the flow; each drags on it as a cylinder. */
   stem_density_pm2: number;
@@ -217,7 +217,7 @@ export const fields = {
     },
     cohesion_Pa: {
       label: "Shear strength", unit: "kPa", factor: 0.001, low: 0, high: 10000, sliderLow: 0, sliderHigh: 10, first: 1,
-      tick: "Cohesion", tickHelp: "A separate cohesion; unticked: as in [material]", help: "Shear strength without pressure between debris and this ground.",
+      tick: "Cohesion", tickHelp: "A separate cohesion; unticked: as in [material]", help: "Shear strength at zero normal stress between debris and this ground.",
     },
     stem_density_pm2: {
       label: "Stems", unit: "1/ha", factor: 10000, low: 0, high: 10000000, sliderLow: 50, sliderHigh: 1550, first: 400,
