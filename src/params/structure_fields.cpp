@@ -38,8 +38,7 @@ Section declare_barrier() {
           "Its line in plan, in the terrain's reference system; at least two places.");
     s.path("file", &BarrierSpec::file, "line_m is given",
            "Its line in a file: GeoJSON, GeoPackage, Shapefile; several lines are a barrier each, called after this "
-           "one and "
-           "their attribute 'name' or number.");
+           "one and their attribute 'name' or number.");
     s.text("layer", &BarrierSpec::layer, "the only layer", "Layer of the file.");
     s.optional_key("height_m", "m", &BarrierSpec::height, above_to(0, 200), "crest_elevation_m is given",
                    "Height above the ground under the line: the crest follows the ground.")
