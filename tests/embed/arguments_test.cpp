@@ -124,7 +124,7 @@ TEST(Library, names_the_argument_that_is_wrong_and_no_file) {
     for (const auto& [height, shown] : {std::pair{0.0, "0"}, {-3.0, "-3"}, {double{nan}, "nan"}, {1001.0, "1001"}}) {
         Slope slope;
         slope.house.height = height;
-        refused(slope, "buildings[0].height = " + std::string(shown) + ": must be above 0");
+        refused(slope, "buildings[0].height = " + std::string(shown) + ": must be greater than 0");
     }
     Slope slope;
     slope.outline[3] = nan;

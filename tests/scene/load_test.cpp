@@ -132,7 +132,8 @@ TEST_F(LoadScene, AThicknessAttributeThatIsAbsentOrNotAboveZeroNamesTheFeature) 
     for (const std::string value : {"0", "-1", "null", "\"thick\"", "1e9"}) {
         write_features("release.geojson",
                        {rectangle(20, 90, 40, 100, "\"d\": 1.5"), rectangle(20, 100, 40, 110, "\"d\": " + value)});
-        EXPECT_THAT(load_error(), AllOf(StartsWith(place), HasSubstr("feature 2 has d = "), HasSubstr("above 0")));
+        EXPECT_THAT(load_error(),
+                    AllOf(StartsWith(place), HasSubstr("feature 2 has d = "), HasSubstr("greater than 0")));
     }
     write_features("release.geojson", {rectangle(20, 90, 40, 100, "\"depth\": 1.5")});
     EXPECT_THAT(load_error(), AllOf(StartsWith(place), EndsWith("its attributes: depth")));
@@ -318,7 +319,7 @@ TEST_F(LoadScene, EveryAttributeIsReadWithItsUnit) {
     EXPECT_EQ(scene.buildings[0].resistance.pressure, 5e5);
     with("1,500", "500 kPa");
     EXPECT_THAT(load_error(), AllOf(HasSubstr("release.geojson: feature 1 has d = \"1,500\", where its comma may"),
-                                    HasSubstr("must be a thickness above 0")));
+                                    HasSubstr("must be a thickness greater than 0")));
     with("1.5", "5 bar");
     EXPECT_THAT(load_error(), AllOf(HasSubstr("buildings.resistance_attribute: "),
                                     HasSubstr("houses.geojson: feature 1 has stands = \"5 bar\", where after its "

@@ -307,7 +307,8 @@ TEST_F(OpenApi, exports_have_the_files_of_a_run_for_other_readers) {
     EXPECT_EQ(get("stac_item.json").json()["type"], "Feature");
     EXPECT_NE(get("results.kml").body.find("<kml"), std::string::npos);
     std::vector<std::string> listed;
-    for (const json& file : as_viewer().get("/api/scenarios/A/exports").json()["files"]) {
+    const json answer = as_viewer().get("/api/scenarios/A/exports").json();
+    for (const json& file : answer["files"]) {
         EXPECT_GT(file["bytes"], 0) << file;
         listed.push_back(file["name"]);
     }
