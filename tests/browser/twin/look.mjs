@@ -115,7 +115,7 @@ export async function testLook(run) {
     await run.back(page, clip, plain, "the natural look");
   });
 
-  await run.check("debris leaves a wet trail that stays, also for who comes later, and goes with time", async () => {
+  await run.check("debris leaves a trail that stays, also for who comes later, and goes with time", async () => {
     await page.selectOption("select[aria-label^=Speed]", "");
     await page.click(".run");
     await until(() => own.ask("scenarios/A/state"), (s) => s.status === "ended" || s.status === "at_rest", "the end");
