@@ -150,9 +150,10 @@ function buildPage(page: HTMLElement, twin: Twin): void {
     : h("span", { class: "wordmark" }, "talus");
   const key = legends(twin, stage, layers);
   const scale = scaleAndCompass(twin, stage, readOut);
-  stage.covers = [bar.camera, bar.show, scale, ...frontMarks(twin, stage, follow)];
+  const foot = h("div", { class: "view-foot" }, measuring(twin, stage, drawing), followButton(twin, stage, follow), badge("over"));
+  stage.covers = [bar.camera, bar.show, scale, foot, ...frontMarks(twin, stage, follow)];
   // Legends stand below the picture: over it they would hide debris and houses.
-  const middle = h("main", { class: "middle" }, triggerBanner(twin), h("div", { class: "view" }, stage.element, bar.camera, bar.show, swipeDivider(twin, stage), scale, h("div", { class: "view-foot" }, measuring(twin, stage, drawing), followButton(twin, stage, follow), badge("over"))), key);
+  const middle = h("main", { class: "middle" }, triggerBanner(twin), h("div", { class: "view" }, stage.element, bar.camera, bar.show, swipeDivider(twin, stage), scale, foot), key);
   // Names of the two views stand below the bars, which wrap on a narrow page, and so does the ground in a plan. On a phone only the camera's is there.
   const bars = new ResizeObserver(() => {
     const below = bar.show.offsetHeight > 0 ? bar.show.offsetTop + bar.show.offsetHeight : bar.camera.offsetTop + bar.camera.offsetHeight;

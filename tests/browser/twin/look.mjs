@@ -115,7 +115,7 @@ export async function testLook(run) {
     await run.back(page, clip, plain, "the natural look");
   });
 
-  await run.check("debris leaves a wet trail that stays, also for who comes later, and goes with time", async () => {
+  await run.check("debris leaves a trail that stays, also for who comes later, and goes with time", async () => {
     await page.selectOption("select[aria-label^=Speed]", "");
     await page.click(".run");
     await until(() => own.ask("scenarios/A/state"), (s) => s.status === "ended" || s.status === "at_rest", "the end");
@@ -143,7 +143,7 @@ export async function testLook(run) {
   await run.check("a briefing is a film that plays: as long as the flow at its speed, with its captions", async () => {
     await page.keyboard.press("n"); // far sooner drawn
     await page.click("[aria-label='Fly-through video']");
-    await page.selectOption("[aria-label='Speed of the film']", "10");
+    await page.selectOption("[aria-label='Speed of the video']", "10");
     await page.locator("label:has-text('whole scene') input").uncheck();
     const film = await saved(page, () => page.click("dialog button:has-text('Make the video')"));
     assert.match(film.name, /-fly-through\.webm$/);
