@@ -92,14 +92,14 @@ async function testCalibration(run, server, page) {
   });
   await run.check("a calibration with the depth-averaged model, which can be cancelled, by keyboard too", async () => {
     await page.locator("label:has-text('Search with the depth-averaged model') input").check();
-    assert.equal(await page.inputValue("[aria-label='Runs at most']"), "10");
+    assert.equal(await page.inputValue("[aria-label='Runs at most']"), "16", "what was typed before");
     await run.shot(page, "35b-two-models");
     await page.locator(".calibrate-form button.primary").focus();
     await page.keyboard.press("Enter");
     const focused = () => page.evaluate(() => document.activeElement.textContent);
     await until(focused, (text) => text === "Cancel", "the focus goes on to what takes the place of the button");
     assert.equal((await status()).state, "running");
-    await until(() => page.textContent(".calibrate-progress"), (t) => /^\d+ of at most 100 runs depth-averaged, 0 of at most 10 runs of particles/.test(t), "both models are counted");
+    await until(() => page.textContent(".calibrate-progress"), (t) => /^\d+ of at most 100 runs depth-averaged, 0 of at most 16 runs of particles/.test(t), "both models are counted");
     await until(async () => (await status()).fast_runs.length, (n) => n >= 2, "runs of the fast model");
     assert.equal((await status()).runs.length, 0, "particles wait for the fast model's design");
     await page.keyboard.press("Enter");

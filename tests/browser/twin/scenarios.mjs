@@ -71,8 +71,9 @@ export async function testScenarios(run) {
     const times = (await page.evaluate(() => window.written)).filter((text) => /t = /.test(text));
     assert.deepEqual(times, ["A left: t = 4.0 s   B right: t = 0.0 s"]);
     assert.match(report.bytes.toString(), /<th>A <small>4\.0.s<\/small><\/th><th>B <small>0\.0.s<\/small><\/th>/);
-    const line = await page.locator(".timeline").boundingBox();
     await row("A").click();
+    await until(() => page.textContent(".clock"), (t) => /^4\.\d\d s A$/.test(t), "the clock of A");
+    const line = await page.locator(".timeline").boundingBox();
     await page.mouse.click(line.x + 0.5 * line.width, line.y + 0.5 * line.height);
     await until(() => page.locator(".pane-name").allTextContents(), (t) => /, (1\.9|2\.0|2\.1).s$/.test(t[0] ?? "") && /, 0\.0.s$/.test(t[1] ?? ""), "the recording has no more of B");
     await page.click(".live");
@@ -103,9 +104,11 @@ export async function testScenarios(run) {
     const divider = page.locator(".divider");
     const box = await boxOf(divider);
     const view = await boxOf(page.locator(".stage canvas"));
-    await page.mouse.move(box.x + box.width / 2, box.y + 40);
+    // Below the bars.
+    const y = box.y + 0.7 * box.height;
+    await page.mouse.move(box.x + box.width / 2, y);
     await page.mouse.down();
-    await page.mouse.move(view.x + 0.3 * view.width, box.y + 40, { steps: 4 });
+    await page.mouse.move(view.x + 0.3 * view.width, y, { steps: 4 });
     await page.mouse.up();
     assert.equal(await divider.getAttribute("aria-valuenow"), "30");
     await run.shot(page, "39-swipe");

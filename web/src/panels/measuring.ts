@@ -20,7 +20,7 @@ export function measureButton(twin: Twin): HTMLElement {
 /** What is measured, over the view: while a line is drawn, and as long as it is kept. */
 export function measuring(twin: Twin, stage: Stage, drawing: Drawing): HTMLElement {
   const values = h("dl", { class: "measures" });
-  const how = h("p", { class: "hint" }, "Click points on the ground; double-click or Enter ends. Backspace removes the last point, Escape cancels.");
+  const how = h("p", { class: "hint" }, "Click points on the ground; double-click or Enter ends.");
   const profile = button("Profile", { icon: "section", class: "small", title: "Ground and debris along this line, in the readings", onclick: () => (twin.section.value = twin.measured.value) });
   const again = button("New line", { class: "small", onclick: () => toggleMeasuring(twin) });
   const remove = button("Remove", { class: "small quiet", onclick: () => (twin.measured.value = null) });
@@ -30,6 +30,8 @@ export function measuring(twin: Twin, stage: Stage, drawing: Drawing): HTMLEleme
     const line = drawn ? drawing.outline : (twin.measured.value ?? []);
     box.hidden = !drawn && twin.measured.value === null;
     how.hidden = !drawn;
+    // A click goes through to the ground below.
+    box.classList.toggle("drawn", drawn);
     for (const each of [profile, again, remove]) each.hidden = drawn;
     values.replaceChildren(...line.length < 2 ? [] : rows(line, stage, twin).flatMap(([name, value]) => [h("dt", {}, name), h("dd", {}, value)]));
   };
@@ -46,9 +48,9 @@ function rows(line: readonly Point[], stage: Stage, twin: Twin): [string, string
   const m = lineMeasures(line, relief);
   const inside = areaMeasures(line, relief);
   const rows: [string, string][] = [
-    ["Distance", `${quantity(m.plan_m, "m")}, over the ground ${quantity(m.ground_m, "m")}`],
-    ["Height difference", `${m.rise_m > 0 ? "+" : m.rise_m < 0 ? "−" : ""}${fixed(Math.abs(m.rise_m), 1)}\u202fm, ground ${fixed(m.lowest_m, 1)} to ${fixed(m.highest_m, 1)}\u202fm`],
-    ["Slope", `${fixed(m.slope_deg, 1)}° end to end, steepest part ${fixed(m.steepest_deg, 0)}°`]];
-  if (inside) rows.push(["Area inside", `${quantity(inside.plan_m2, "m2")}, over the ground ${quantity(inside.ground_m2, "m2")}`]);
+    ["Distance", `${quantity(m.plan_m, "m")} (${quantity(m.ground_m, "m")} over the ground)`],
+    ["Height difference", `${m.rise_m > 0 ? "+" : m.rise_m < 0 ? "−" : ""}${fixed(Math.abs(m.rise_m), 1)}\u202fm (${fixed(m.lowest_m, 1)} to ${fixed(m.highest_m, 1)}\u202fm)`],
+    ["Slope", `${fixed(m.slope_deg, 1)}° end to end, up to ${fixed(m.steepest_deg, 0)}°`]];
+  if (inside) rows.push(["Area inside", `${quantity(inside.plan_m2, "m2")} (${quantity(inside.ground_m2, "m2")} over the ground)`]);
   return rows;
 }
