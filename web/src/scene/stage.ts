@@ -237,9 +237,9 @@ export class Stage {
   get divider(): number | null {
     return this.views.size > 1 ? this.twin.divider.value : null;
   }
-  /** Whether views stand above one another: where the stage is higher than wide, as on a phone. */
+  /** Whether views stand above one another: where the stage is hardly wider than high, as on a phone. */
   get stacked(): boolean {
-    return this.views.size > 1 && this.width < this.height && this.divider === null;
+    return this.views.size > 1 && this.width < 1.1 * this.height && this.divider === null;
   }
   /** Place of the k-th view in pixels of the stage, from its top left. The next call changes it. */
   private part(k: number): Readonly<Stage["place"]> {
