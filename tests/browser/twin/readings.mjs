@@ -230,12 +230,14 @@ export async function testReadings(run) {
     assert.ok(wanted.length === 3 && Number(wanted[0][3]) > 0.3, wanted.join("; "));
     await until(rows, (list) => list.join() === wanted.join(), wanted.join());
     // Names make room for the mark of the front, which stands beside a gauge.
-    await page.evaluate(() => document.querySelectorAll(".front-mark").forEach((mark) => (mark.hidden = true)));
+    const hidden = await page.evaluate(() => [...document.querySelectorAll(".front-mark:not([hidden])")].map((mark) => (mark.hidden = true)).length);
     await page.click("[aria-label='Top view']");
     await run.still(page, clip);
     // Also where a front velocity was observed at the same place.
     assert.deepEqual((await page.locator(".label.gauge:not(.off)").allTextContents()).sort(), wanted.map(([name]) => name).sort(), "names in the plan");
     await run.shot(page, "11-gauges");
+    assert.equal(hidden, 1);
+    await page.evaluate(() => (document.querySelector(".pane .front-mark").hidden = false));
     await page.keyboard.press("1");
     await page.click("[aria-label='Fit']");
   });

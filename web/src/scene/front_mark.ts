@@ -13,6 +13,8 @@ import type { Stage } from "./stage";
 const slowest_mps = 0.1;
 /** Labels make room for it no more often, ms, and when it has moved so far, px. */
 const room = { every_ms: 300, from_px: 6 };
+/** Nearer, it is there. */
+const near_m = 0.05;
 
 class FrontMark {
   readonly element: HTMLElement;
@@ -21,6 +23,7 @@ class FrontMark {
   private readonly seen = new Vector3();
   private to: Place | null = null;
   private last_ms = 0;
+  private arrived = false;
   private readonly cleared = { x: NaN, y: NaN, at_ms: 0 };
 
   constructor(private readonly name: ScenarioName, private readonly twin: Twin, private readonly stage: Stage, private readonly follow: Follow) {
@@ -49,18 +52,31 @@ class FrontMark {
     if (this.element.parentElement !== pane) pane.append(this.element);
     const share = 1 - Math.exp(-Math.min(1, (now_ms - this.last_ms) / 1000) * 6);
     this.last_ms = now_ms;
-    this.at.set(this.at.x + share * (to[0] - this.at.x), this.at.y + share * (to[1] - this.at.y), this.at.z + share * (to[2] - this.at.z));
+    const dx = to[0] - this.at.x;
+    const dy = to[1] - this.at.y;
+    const dz = to[2] - this.at.z;
+    const there = Math.hypot(dx, dy, dz) < near_m;
+    if (there) this.at.set(...to);
+    else {
+      this.at.set(this.at.x + share * dx, this.at.y + share * dy, this.at.z + share * dz);
+      stage.invalidate();  // it goes on to where it belongs, also when nothing else moves
+    }
     seen.copy(this.at).project(stage.rig.camera);
     const x = ((seen.x + 1) / 2) * pane.clientWidth;
     const y = ((1 - seen.y) / 2) * pane.clientHeight;
     this.element.classList.toggle("off", seen.z > 1);
     this.element.style.transform = `translate(${x.toFixed(1)}px, ${y.toFixed(1)}px)`;
-    if (now_ms < this.cleared.at_ms + room.every_ms || Math.hypot(x - this.cleared.x, y - this.cleared.y) < room.from_px) return;
+    // At its end labels stand as they do wherever it came from.
+    const arrived = there && !this.arrived;
+    this.arrived = there;
+    if (!arrived && (now_ms < this.cleared.at_ms + room.every_ms || Math.hypot(x - this.cleared.x, y - this.cleared.y) < room.from_px)) return;
     this.cleared.x = x;
     this.cleared.y = y;
     this.cleared.at_ms = now_ms;
     const view = stage.views.get(this.name);
-    if (view) view.labels.placed = false;
+    if (!view) return;
+    view.labels.placed = false;
+    if (arrived) stage.invalidate();
   }
 }
 
