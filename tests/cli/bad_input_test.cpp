@@ -122,7 +122,7 @@ const std::vector<BadInput> bad_inputs = {
      {"slope.toml", "13", "end_time_s", "long"}},
     {"OutOfRange",
      [](const SmallScene& s) { s.replace("end_time_s = 1", "end_time_s = -1"); },
-     {"slope.toml", "13", "end_time_s", "-1", "above 0"}},
+     {"slope.toml", "13", "end_time_s", "-1", "greater than 0"}},
 
     // Terrain
     {"MissingTerrain", [](const SmallScene& s) { std::filesystem::remove(s.input("terrain.tif")); }, {"terrain.tif"}},
