@@ -179,7 +179,7 @@ export class Run {
       const seen = await this.colours(page, clip);
       const after = await at();
       const quiet = before.begun === before.ended && after.begun === before.begun && before.pixelRatio === before.sharpest && after.frames === before.frames;
-      const same = quiet && last !== null && (last.hash === seen.hash || await page.evaluate(largestDifference, [last.png.toString("base64"), seen.png.toString("base64")]) <= 3);
+      const same = quiet && last !== null && (last.hash === seen.hash || await page.evaluate(largestDifference, [last.png.toString("base64"), seen.png.toString("base64")]) <= sameShade);
       last = quiet ? seen : null;
       return { seen: same ? seen : null, quiet, before, after };
     }, ({ seen }) => seen !== null, "a view at rest");
@@ -192,12 +192,18 @@ export class Run {
   }
   /** The same once it is `one` again. */
   async back(page, clip, one, what) {
-    await until(async () => (await this.colours(page, clip)).hash, (hash) => hash === one.hash, what);
+    await until(async () => {
+      const seen = await this.colours(page, clip);
+      return seen.hash === one.hash ? 0 : page.evaluate(largestDifference, [one.png.toString("base64"), seen.png.toString("base64")]);
+    }, (difference) => difference <= sameShade, what);
   }
   async shot(page, name) {
     await page.screenshot({ path: join(this.output, `${name}.png`) });
   }
 }
+
+/** Of 255: pictures of one view may differ by so much where a mark lies between two pixels. */
+const sameShade = 3;
 
 /** Two display frames from now: what was asked for before is on the canvas, however slow the machine is. */
 const drawn = () => new Promise((resolve) => requestAnimationFrame(() => requestAnimationFrame(() => resolve())));
