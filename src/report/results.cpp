@@ -278,8 +278,7 @@ Json quality(const scene::Scene& scene, const run::RunResult& result) {
          fact("Iterations",
               c.time_share_iterated > 0
                   ? fmt::format("{} per step, up to {} more while debris was overcompressed: in {} % of the simulated "
-                                "time, {} on "
-                                "average",
+                                "time, {} on average",
                                 scene.spec.solver.iteration_count, scene.spec.solver.extra_iteration_count,
                                 significant(100 * c.time_share_iterated, 2), fixed(c.mean_iterations, 1))
                   : fmt::format("{} per step", scene.spec.solver.iteration_count)),

@@ -48,7 +48,7 @@ geo::Attribute value_of(const geo::PolygonFeature& feature, const std::string& a
     return found == feature.attributes.end() ? geo::Attribute() : found->second;
 }
 
-/// The pressure that a building stands: its own, that of all, or none. `who`: "feature 3".
+/// The pressure that a building withstands: its own, that of all, or none. `who`: "feature 3".
 Status read_resistance(const ParsedScene& parsed, const std::string& who, const geo::Attribute& own,
                        terrain::Building& building) {
     const params::BuildingsSpec& spec = parsed.spec.buildings;
