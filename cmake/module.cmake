@@ -60,7 +60,7 @@ endfunction()
 
 # talus_test(NAME LABEL DEPENDS...): the program test_NAME from every .cpp in the current folder, its tests labelled. A folder
 # may set before it:
-#   talus_test_processors  processors that each of its tests has for itself
+#   talus_measured_tests   regular expression of tests that measure time: each has the machine for itself
 #   talus_memory_tests     googletest pattern of what the address sanitizer looks at: what reads what others wrote, indexes
 #                          arrays, or owns memory across threads
 #   talus_thread_tests     the same for the thread sanitizer
@@ -89,12 +89,19 @@ function(talus_test name label)
   else()
     target_compile_options(test_${name} PRIVATE -O0)
   endif()
-  set(processors 1)
-  if(talus_test_processors)
-    set(processors ${talus_test_processors})
-  endif()
   gtest_discover_tests(test_${name} TEST_PREFIX ${name}. ${filter} PROPERTIES LABELS ${label} TIMEOUT 300
-                       PROCESSORS ${processors} DISCOVERY_TIMEOUT 60)
+                       DISCOVERY_TIMEOUT 60)
+  if(talus_measured_tests)
+    # Names are known once the program is built: ctest reads this after the list of them.
+    set(properties ${CMAKE_CURRENT_BINARY_DIR}/measured_tests.cmake)
+    file(WRITE ${properties} "foreach(name IN LISTS test_${name}_TESTS)
+  if(name MATCHES \"${talus_measured_tests}\")
+    set_tests_properties(\${name} PROPERTIES PROCESSORS 1024)  # more than there are: all of them
+  endif()
+endforeach()
+")
+    set_property(DIRECTORY APPEND PROPERTY TEST_INCLUDE_FILES ${properties})
+  endif()
 endfunction()
 
 # talus_reads_foreign(TARGET): a test program that has untrusted files read, and sees what is opened for it.

@@ -120,8 +120,8 @@ export class Run {
       await this.last?.screenshot({ path: join(this.output, `failed-${this.failed}.png`), timeout: 30_000 }).catch(() => {});
     }
   }
-  /** finest: with the whole mesh of the ground; a coarser one is drawn in a fraction of the time. look: natural ones take far longer to draw without a graphics card. edits: how runs that have begun are edited; null: not chosen yet. touch: as on a phone. late: which texts of the server come late, as from a busy one. scale: pixels of the screen per pixel of the page. opening: with the first view of the scene; otherwise the whole ground is shown, where places are at the same shares of the view whatever the scene holds. prepare: called with the page before it loads. TALUS_SITE=FOLDER: with another build of the page than the program's. */
-  async open(link, { width = 1280, height = 720, reduced = true, name, finest = false, edits = "now", look = "scientific", touch = false, late, scale = 1, opening = false, prepare } = {}) {
+  /** finest: with the whole mesh of the ground; a coarser one is drawn in a fraction of the time. look: natural ones take far longer to draw without a graphics card. edits: how runs that have begun are edited; null: not chosen yet. touch: as on a phone. late: which texts of the server come late, as from a busy one. scale: pixels of the screen per pixel of the page; half as many a side are drawn in two thirds of the time. opening: with the first view of the scene; otherwise the whole ground is shown, where places are at the same shares of the view whatever the scene holds. prepare: called with the page before it loads. TALUS_SITE=FOLDER: with another build of the page than the program's. */
+  async open(link, { width = 1280, height = 720, reduced = true, name, finest = false, edits = "now", look = "scientific", touch = false, late, scale = 0.5, opening = false, prepare } = {}) {
     const context = await this.browser.newContext({ viewport: { width, height }, deviceScaleFactor: scale, reducedMotion: reduced ? "reduce" : "no-preference", acceptDownloads: true, hasTouch: touch, isMobile: touch });
     const page = await context.newPage();
     if (name) await page.addInitScript((n) => localStorage.setItem("talus-name", n), name);
@@ -137,7 +137,7 @@ export class Run {
       if (!/^(data|blob):/.test(request.url())) this.requests.push(request.url());
     });
     page.setDefaultTimeout(limit_ms);
-    if (!finest) await page.route(/\/api\/terrain/, (route) => route.continue({ url: route.request().url().replace(/max_cells=\d+/, "max_cells=20000") }));
+    if (!finest) await page.route(/\/api\/terrain/, (route) => route.continue({ url: route.request().url().replace(/max_cells=\d+/, "max_cells=8000") }));
     if (late) {
       await page.routeWebSocket(/\/ws/, (toPage) => {
         const toServer = toPage.connectToServer();
