@@ -38,6 +38,7 @@ class ActionReader {
     Status put_zone();
     Status put_bed();
     Status put_inflow();
+    Status put_note();
     template <class Entries>
     Status remove(Entries& entries, const char* what);
 
@@ -67,8 +68,10 @@ std::ptrdiff_t drawn(const std::vector<Entry>& entries) {
     return std::count_if(entries.begin(), entries.end(), [](const Entry& entry) {
         if constexpr (requires { entry.scene_index; })
             return entry.scene_index < 0;
-        else
+        else if constexpr (requires { entry.from_scene; })
             return !entry.from_scene;
+        else
+            return true;
     });
 }
 
@@ -90,6 +93,9 @@ const std::string& name_of(const scene::BedLayer& layer) {
 }
 const std::string& name_of(const terrain::Inflow& inflow) {
     return inflow.name;
+}
+const std::string& name_of(const Note& note) {
+    return note.name;
 }
 
 Result<std::string> ActionReader::id() const {
@@ -169,7 +175,8 @@ Status ActionReader::put(std::vector<Entry>& entries, const char* what, int& num
     if (existing == nullptr && drawn(entries) >= max_drawn) {
         return Error{fmt::format("{} {}s are drawn, the most there can be; remove one first", max_drawn, what)};
     }
-    TALUS_ASSIGN(const auto name, read_text(action_, "name"));
+    constexpr std::size_t longest = std::is_same_v<Entry, NoteSetup> ? 200 : 80;
+    TALUS_ASSIGN(const auto name, read_text(action_, "name", longest));
     TALUS_ASSIGN(auto body, read(existing, name.value_or(existing != nullptr ? name_of(*existing->body)
                                                                              : fmt::format("{} {}", what, number))));
     Entry made = add(std::move(body));
@@ -286,6 +293,18 @@ Status ActionReader::put_inflow() {
         });
 }
 
+Status ActionReader::put_note() {
+    return put(
+        edit_.setup.notes, "note", next_.note,
+        [&](const NoteSetup* existing, const std::string& name) {
+            return read_note(action_, context_, existing != nullptr ? existing->body.get() : nullptr, name);
+        },
+        [](Note note) {
+            return NoteSetup{"", std::make_shared<const Note>(std::move(note))};
+        },
+        [](const NoteSetup&, const NoteSetup* existing) { return existing != nullptr ? " changed" : " pinned"; });
+}
+
 Status ActionReader::trigger_release() {
     TALUS_TRY(check_keys(action_, {"action", "id"}));
     TALUS_ASSIGN(const auto given, id());
@@ -345,6 +364,8 @@ Result<Edit> read_action(const json& action, const Setup& setup, NextNumbers& ne
         {"remove_bed", [&] { return reader.remove(changed.beds, "bed"); }},
         {"put_inflow", [&] { return reader.put_inflow(); }},
         {"remove_inflow", [&] { return reader.remove(changed.inflows, "inflow"); }},
+        {"put_note", [&] { return reader.put_note(); }},
+        {"remove_note", [&] { return reader.remove(changed.notes, "note"); }},
     };
     const auto wanted = std::find_if(std::begin(actions), std::end(actions),
                                      [&](const auto& action_and_work) { return action_and_work.first == name; });

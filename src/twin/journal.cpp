@@ -91,7 +91,8 @@ json write_journal(const Journal& journal) {
               {"building", journal.next.building},
               {"zone", journal.next.zone},
               {"bed", journal.next.bed},
-              {"inflow", journal.next.inflow}}},
+              {"inflow", journal.next.inflow},
+              {"note", journal.next.note}}},
             {"actions", actions},
             {"last",
              {{"step", journal.steps},
@@ -124,10 +125,12 @@ Result<Journal> read_journal(const std::string& text) {
     }
     journal.first_setup = read.object(file, "first_setup");
     const json& next = read.object(file, "next");
-    read.keys(next, "next", {"release", "barrier", "building", "zone", "bed", "inflow"});
+    read.keys(next, "next", {"release", "barrier", "building", "zone", "bed", "inflow", "note"});
     journal.next = {static_cast<int>(read.whole(next, "release")),  static_cast<int>(read.whole(next, "barrier")),
                     static_cast<int>(read.whole(next, "building")), static_cast<int>(read.whole(next, "zone")),
                     static_cast<int>(read.whole(next, "bed")),      static_cast<int>(read.whole(next, "inflow"))};
+    // Journals did not always have notes.
+    if (next.contains("note")) journal.next.note = static_cast<int>(read.whole(next, "note"));
     std::uint64_t before = 0;
     for (const json& entry : read.list(file, "actions")) {
         read.keys(entry, "actions", {"step", "by", "action", "setup"});

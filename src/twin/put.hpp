@@ -39,6 +39,10 @@ namespace talus::twin {
                                                   const Setup& setup, const InflowSetup* existing,
                                                   const std::string& name);
 
+/// Errors: without a text, or beside the terrain.
+[[nodiscard]] Result<Note> read_note(const nlohmann::json& action, const ActionContext& context, const Note* existing,
+                                     const std::string& name);
+
 /// Particles of all sources of debris, with this inflow in place of `existing`; `spacing` in m.
 [[nodiscard]] double particles_in_all(const Setup& setup, const InflowSetup* existing, const terrain::Inflow& inflow,
                                       double spacing);

@@ -51,8 +51,9 @@ Result<std::filesystem::path> keep_fault(const run::FaultRecord& record, const j
     return kept;
 }
 
-/// Whether an action gives a new name and nothing else.
-bool only_renames(const json& action) {
+/// Whether the run is the same after an action: it gives a new name and nothing else, or is about a note.
+bool leaves_the_run(const json& action) {
+    if (action["action"] == "put_note" || action["action"] == "remove_note") return true;
     return action.contains("id") && action.contains("name") && action.size() == 3;
 }
 
@@ -174,7 +175,7 @@ void Scenario::advance() {
 
 void Scenario::Parts::note_change(const json& action, const std::string& by, const std::string& sentence) {
     const std::uint64_t step = run->summary().step;
-    if (step == 0 || only_renames(action)) return;
+    if (step == 0 || leaves_the_run(action)) return;
     const bool undoes = action["action"] == "undo", redoes = action["action"] == "redo";
     const bool reverses = !changes.empty() && changes.back().step == step && (changes.back().undoes ? redoes : undoes);
     if (reverses) {

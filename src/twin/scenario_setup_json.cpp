@@ -109,6 +109,10 @@ json building_json(const BuildingSetup& building) {
     return entry;
 }
 
+json note_json(const NoteSetup& note) {
+    return {{"id", note.id}, {"name", note.body->name}, {"x_m", note.body->at.x}, {"y_m", note.body->at.y}};
+}
+
 template <class Entry>
 bool in_force(const Entry& entry, const std::vector<Entry>& begun_with) {
     const Entry* begun = find_id(begun_with, entry.id);
@@ -140,6 +144,8 @@ json Scenario::setup_json() const {
         entry["in_force"] = in_force(inflow, p.run->begun_with().inflows);
         inflows.push_back(std::move(entry));
     }
+    json notes = json::array();
+    for (const NoteSetup& note : setup.notes) notes.push_back(note_json(note));
     json changes = json::array();
     for (const Parts::ChangeOnTheWay& change : p.changes) {
         changes.push_back({{"time_s", change.time}, {"by", change.by}, {"sentence", change.sentence}});
@@ -153,6 +159,7 @@ json Scenario::setup_json() const {
             {"zones", zones},
             {"beds", beds},
             {"inflows", inflows},
+            {"notes", notes},
             {"pending_restart", !begin_alike(setup, p.run->begun_with())},
             {"undo", p.undo.empty() ? json() : json(p.undo.back().sentence)},
             {"redo", p.redo.empty() ? json() : json(p.redo.back().sentence)}};

@@ -67,6 +67,17 @@ struct InflowSetup {
     bool as_in_scene = false;
 };
 
+/// What people have written at a place; the run does not know of it.
+struct Note {
+    std::string name;  ///< the text
+    PlanPoint at;
+};
+
+struct NoteSetup {
+    std::string id;
+    std::shared_ptr<const Note> body;
+};
+
 struct Setup {
     params::MaterialSpec material;
     std::vector<ReleaseSetup> releases;
@@ -75,11 +86,12 @@ struct Setup {
     std::vector<ZoneSetup> zones;  ///< later ones override earlier ones
     std::vector<BedSetup> beds;    ///< later ones override earlier ones; these and inflows apply from time 0
     std::vector<InflowSetup> inflows;
+    std::vector<NoteSetup> notes;
 };
 
 /// Numbers of the next new ids; an id is never used twice.
 struct NextNumbers {
-    int release = 1, barrier = 1, building = 1, zone = 1, bed = 1, inflow = 1;
+    int release = 1, barrier = 1, building = 1, zone = 1, bed = 1, inflow = 1, note = 1;
 };
 
 /// The scene as it was loaded; `next` is set to follow it.

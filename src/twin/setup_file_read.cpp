@@ -45,6 +45,7 @@ class SetupReader {
     Result<ZoneSetup> read_zone(const json& file) const;
     Result<BedSetup> read_bed(const json& file) const;
     Result<InflowSetup> read_inflow(const json& file) const;
+    Result<NoteSetup> read_note(const json& file) const;
 
   private:
     static Error bad(const char* key, const json& object) {
@@ -290,13 +291,29 @@ Result<InflowSetup> SetupReader::read_inflow(const json& file) const {
     return setup;
 }
 
+Result<NoteSetup> SetupReader::read_note(const json& file) const {
+    if (!file.is_object() || !file.contains("id") || !file["id"].is_string()) return bad("id", file);
+    TALUS_TRY(check_keys(file, {"id", "name", "x_m", "y_m"}));
+    Note note;
+    TALUS_ASSIGN(note.name, read_name(file));
+    const auto x = read_number(file, "x_m", {}, "m"), y = read_number(file, "y_m", {}, "m");
+    if (!x || !*x) return bad("x_m", file);
+    if (!y || !*y) return bad("y_m", file);
+    note.at = {**x, **y};
+    return NoteSetup{file["id"], std::make_shared<const Note>(std::move(note))};
+}
+
 }  // namespace
 
 Result<Setup> read_setup(const json& file, const scene::Scene& scene) {
     if (!file.is_object()) return Error{fmt::format("setup = {}: must be an object", shown(file))};
-    const auto sections = {"material"sv, "releases"sv, "barriers"sv, "buildings"sv, "zones"sv, "beds"sv, "inflows"sv};
+    const auto sections = {"material"sv, "releases"sv, "barriers"sv, "buildings"sv,
+                           "zones"sv,    "beds"sv,     "inflows"sv,  "notes"sv};
     for (const std::string_view key : sections) {
-        if (!file.contains(key)) return Error{fmt::format("setup.{}: missing", key)};
+        if (!file.contains(key)) {
+            if (key == "notes") continue;  // journals did not always have them
+            return Error{fmt::format("setup.{}: missing", key)};
+        }
         if (key != "material" && !file[key].is_array()) {
             return Error{fmt::format("setup.{} = {}: must be a list", key, shown(file[key]))};
         }
@@ -323,6 +340,8 @@ Result<Setup> read_setup(const json& file, const scene::Scene& scene) {
     TALUS_TRY(read_all(file["beds"], setup.beds, "beds", [&](const json& e) { return reader.read_bed(e); }));
     TALUS_TRY(
         read_all(file["inflows"], setup.inflows, "inflows", [&](const json& e) { return reader.read_inflow(e); }));
+    TALUS_TRY(read_all(file.value("notes", json::array()), setup.notes, "notes",
+                       [&](const json& e) { return reader.read_note(e); }));
     return setup;
 }
 

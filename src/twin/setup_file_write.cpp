@@ -90,7 +90,8 @@ json write_setup(const Setup& setup) {
                  {"buildings", json::array()},
                  {"zones", json::array()},
                  {"beds", json::array()},
-                 {"inflows", json::array()}};
+                 {"inflows", json::array()},
+                 {"notes", json::array()}};
     for (const ReleaseSetup& release : setup.releases) {
         json entry = entry_json(release);
         if (release.triggered) entry["triggered"] = true;
@@ -109,6 +110,10 @@ json write_setup(const Setup& setup) {
     for (const ZoneSetup& zone : setup.zones) file["zones"].push_back(entry_json(zone));
     for (const BedSetup& bed : setup.beds) file["beds"].push_back(entry_json(bed));
     for (const InflowSetup& inflow : setup.inflows) file["inflows"].push_back(entry_json(inflow));
+    for (const NoteSetup& note : setup.notes) {
+        file["notes"].push_back(
+            {{"id", note.id}, {"name", note.body->name}, {"x_m", note.body->at.x}, {"y_m", note.body->at.y}});
+    }
     return file;
 }
 

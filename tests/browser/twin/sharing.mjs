@@ -1,6 +1,6 @@
 // Several people in one session, breaks of the connection, sizes of the window, keyboard and names of controls.
 import { testPhone } from "./phone.mjs";
-import { assert, shownTime, shows, until, viewClip } from "./harness.mjs";
+import { assert, clickGround, shownTime, shows, until, viewClip } from "./harness.mjs";
 import jsQR from "jsqr";
 
 /** The colours of a PNG file, decoded by the browser. */
@@ -81,6 +81,34 @@ export async function testSharing(run) {
     await ada.click(".control");
     await until(() => ada.textContent(".control"), (t) => /You have control/.test(t), "taken");
     await ben.context().close();
+  });
+
+  await run.check("a note that one pins is seen by the other, goes to its place, and is undone", async () => {
+    const eve = await run.open(server.viewer, { ...small, name: "Eve" });
+    await ada.locator("[data-tab=points]").click();
+    await ada.click("button:has-text('Pin a note')");
+    await clickGround(ada, 0.5, 0.55);
+    await ada.fill("[aria-label='Text of the note']", "Culvert blocked in 2019");
+    await ada.keyboard.press("Enter");
+    const seen = (page) => page.locator(".label.note").allTextContents();
+    await until(() => seen(eve), (texts) => texts.includes("Culvert blocked in 2019"), "the note in the other's view");
+    const [note] = (await server.ask("scenarios/A/setup")).notes;
+    assert.equal(note.name, "Culvert blocked in 2019");
+    await eve.locator("[data-tab=points]").click();
+    assert.equal(await eve.isDisabled("button:has-text('Pin a note')"), true, "a viewer pins none");
+    await eve.click("button.item:has-text('Culvert')");
+    await run.still(eve, await viewClip(eve));
+    await run.shot(eve, "16-note");
+    await ada.click("[aria-label='Edit the note “Culvert blocked in 2019”']");
+    await ada.fill("[aria-label='Text of the note']", "Culvert cleared");
+    await ada.keyboard.press("Enter");
+    await until(() => seen(eve), (texts) => texts.includes("Culvert cleared"), "the changed note");
+    await ada.click("[aria-label='Remove the note “Culvert cleared”']");
+    await until(() => seen(eve), (texts) => texts.length === 0, "no note");
+    await ada.click(".controls button:has-text('Undo')");
+    await until(() => seen(eve), (texts) => texts.includes("Culvert cleared"), "the note that came back");
+    await ada.click(".controls button:has-text('Undo')");
+    await eve.context().close();
   });
 
   await run.check("sharing in the network is off until it is pressed, shows a QR code, lets others in, and ends", async () => {

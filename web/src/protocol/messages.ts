@@ -179,6 +179,15 @@ export interface Inflow extends InflowValues {
 }
 /** A change of a run after its first step. */
 export interface ChangeOnTheWay { time_s: number; by: string; sentence: string }
+/** What people have written at a place; the run does not know of it. */
+export interface Note {
+  id: string;
+  /** The text. */
+  name: string;
+  x_m: number;
+  y_m: number;
+}
+
 export interface Setup {
   scenario: ScenarioName;
   /** Given by people; may be empty. */
@@ -192,6 +201,7 @@ export interface Setup {
   zones: Zone[];
   beds: Bed[];
   inflows: Inflow[];
+  notes: Note[];
   /** Beds or inflows differ from those at the run's start. */
   pending_restart: boolean;
   undo: string | null;
@@ -353,7 +363,8 @@ export type Action =
   | { action: "put_zone"; id?: string; name?: string; polygon?: Point[]; move_m?: Point } & Partial<ZoneValues>
   | { action: "put_bed"; id?: string; name?: string; polygon?: Point[]; move_m?: Point } & Partial<BedValues>
   | { action: "put_inflow"; id?: string; name?: string; line?: Point[]; polygon?: Point[]; move_m?: Point; hydrograph?: HydrographRow[] } & Partial<InflowValues>
-  | { action: "trigger_release" | "remove_release" | "remove_barrier" | "remove_building" | "remove_zone" | "remove_bed" | "remove_inflow"; id: string };
+  | { action: "put_note"; id?: string; name?: string; x_m?: number; y_m?: number }
+  | { action: "remove_note" | "trigger_release" | "remove_release" | "remove_barrier" | "remove_building" | "remove_zone" | "remove_bed" | "remove_inflow"; id: string };
 export interface Done { done: string; created: string | null }
 /** object: id of what the action made. */
 export interface NewScenario { done: string; created: ScenarioName; object: string | null }

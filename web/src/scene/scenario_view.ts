@@ -25,6 +25,9 @@ import { barrierSolid, disposeSolid, houseSolid, plainHouse } from "./solids";
 import { quantity } from "../state/format";
 
 export const releaseColour = "#a3262a";
+/** What fits over the view; the list of notes has the whole. */
+const shortened = (text: string): string => (text.length > 48 ? `${text.slice(0, 47)}…` : text);
+
 const barrierColour = "#5d7f92";
 const pathColour = "#08364d";
 
@@ -208,6 +211,7 @@ export class ScenarioView {
     const labels: Label[] = [...this.extraLabels];
     const { relief, shared: { scene } } = this;
     const size = relief.width + relief.height;
+    for (const note of this.setup?.notes ?? []) labels.push({ at: relief.local(note.x_m, note.y_m, 0.5), text: shortened(note.name), kind: "note", priority: 9 });
     if (this.namesShown) {
       for (const { chainage, at } of this.chainageMarks()) {
         labels.push({ at: relief.local(at[0], at[1], 1), text: chainage === 0 ? "0 m" : `${chainage}`, kind: "chainage", priority: 2, farthest: 1.6 * size });

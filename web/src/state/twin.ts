@@ -27,7 +27,7 @@ export interface ScenarioCells {
 }
 
 export type Shape = "release" | "barrier" | "building" | "zone" | "bed" | "inflow";
-export type Tool = { kind: "none" } | { kind: "draw"; shape: Shape } | { kind: "probe" } | { kind: "section" } | { kind: "measure" };
+export type Tool = { kind: "none" } | { kind: "draw"; shape: Shape } | { kind: "probe" } | { kind: "section" } | { kind: "measure" } | { kind: "note" };
 export interface Selection { shape: Shape; id: string }
 export interface Probe { at: Point; colour: string; series: Partial<Record<ScenarioName, ProbeSeries>> }
 export type SurfaceColour = "off" | "depth" | "speed";
@@ -93,6 +93,8 @@ export class Twin {
   readonly inflowByLine = new Cell(true);
   readonly probes = new Cell<readonly Probe[]>([]);
   readonly section = new Cell<readonly Point[] | null>(null);
+  /** Where a note is to be pinned; null once its text is asked for. */
+  readonly pinned = new Cell<Point | null>(null);
   /** Line or outline that is measured. */
   readonly measured = new Cell<readonly Point[] | null>(null);
 

@@ -53,6 +53,7 @@ const paths = {
   barrier: "M2 12.500V6.500h12v6zM2 9.500h12M6 6.500v3M10 6.500v3M8 9.500v3M4 9.500v3M12 9.500v3",
   house: "M2.500 8 8 3l5.500 5M4 7v6.500h8V7",
   edit: "M3 13l.6-2.800L11 2.800l2.200 2.200-7.400 7.400z",
+  note: "M3 2.500h10v7L9 13.500H3zM9 13.500v-4h4",
   live: "M8 5.500a2.500 2.500 0 1 1 0 5 2.500 2.500 0 0 1 0-5z",
 } as const;
 export type IconName = keyof typeof paths;
