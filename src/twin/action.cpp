@@ -38,6 +38,7 @@ class ActionReader {
     Status put_zone();
     Status put_bed();
     Status put_inflow();
+    Status put_gauge();
     Status put_note();
     template <class Entries>
     Status remove(Entries& entries, const char* what);
@@ -93,6 +94,9 @@ const std::string& name_of(const scene::BedLayer& layer) {
 }
 const std::string& name_of(const terrain::Inflow& inflow) {
     return inflow.name;
+}
+const std::string& name_of(const terrain::Gauge& gauge) {
+    return gauge.name;
 }
 const std::string& name_of(const Note& note) {
     return note.name;
@@ -293,6 +297,23 @@ Status ActionReader::put_inflow() {
         });
 }
 
+Status ActionReader::put_gauge() {
+    return put(
+        edit_.setup.gauges, "gauge", next_.gauge,
+        [&](const GaugeSetup* existing, const std::string& name) {
+            return read_gauge_place(action_, context_, edit_.setup, existing, name);
+        },
+        [](terrain::Gauge gauge) {
+            return GaugeSetup{"", std::make_shared<const terrain::Gauge>(std::move(gauge))};
+        },
+        [&](const GaugeSetup& gauge, const GaugeSetup* existing) {
+            const std::string where = std::isnan(gauge.body->chainage)
+                                          ? fmt::format("E {:.1f}, N {:.1f} m", gauge.body->at.x, gauge.body->at.y)
+                                          : fmt::format("chainage {:.1f} m", gauge.body->chainage);
+            return fmt::format(" {}: {}{}", existing != nullptr ? "changed" : "added", where, from_restart());
+        });
+}
+
 Status ActionReader::put_note() {
     return put(
         edit_.setup.notes, "note", next_.note,
@@ -327,7 +348,8 @@ Status ActionReader::remove(Entries& entries, const char* what) {
     const auto* entry = find_id(entries, given);
     if (entry == nullptr) return no_such(given, what);
     using Entry = std::remove_cvref_t<decltype(*entry)>;
-    constexpr bool from_time_0 = std::is_same_v<Entry, BedSetup> || std::is_same_v<Entry, InflowSetup>;
+    constexpr bool from_time_0 =
+        std::is_same_v<Entry, BedSetup> || std::is_same_v<Entry, InflowSetup> || std::is_same_v<Entry, GaugeSetup>;
     edit_.sentence =
         fmt::format("{} {} removed{}", what, in_quotes(name_of(*entry->body)), from_time_0 ? from_restart() : "");
     entries.erase(entries.begin() + (entry - entries.data()));
@@ -364,6 +386,8 @@ Result<Edit> read_action(const json& action, const Setup& setup, NextNumbers& ne
         {"remove_bed", [&] { return reader.remove(changed.beds, "bed"); }},
         {"put_inflow", [&] { return reader.put_inflow(); }},
         {"remove_inflow", [&] { return reader.remove(changed.inflows, "inflow"); }},
+        {"put_gauge", [&] { return reader.put_gauge(); }},
+        {"remove_gauge", [&] { return reader.remove(changed.gauges, "gauge"); }},
         {"put_note", [&] { return reader.put_note(); }},
         {"remove_note", [&] { return reader.remove(changed.notes, "note"); }},
     };

@@ -92,6 +92,7 @@ json write_journal(const Journal& journal) {
               {"zone", journal.next.zone},
               {"bed", journal.next.bed},
               {"inflow", journal.next.inflow},
+              {"gauge", journal.next.gauge},
               {"note", journal.next.note}}},
             {"actions", actions},
             {"last",
@@ -125,11 +126,12 @@ Result<Journal> read_journal(const std::string& text) {
     }
     journal.first_setup = read.object(file, "first_setup");
     const json& next = read.object(file, "next");
-    read.keys(next, "next", {"release", "barrier", "building", "zone", "bed", "inflow", "note"});
+    read.keys(next, "next", {"release", "barrier", "building", "zone", "bed", "inflow", "gauge", "note"});
     journal.next = {static_cast<int>(read.whole(next, "release")),  static_cast<int>(read.whole(next, "barrier")),
                     static_cast<int>(read.whole(next, "building")), static_cast<int>(read.whole(next, "zone")),
                     static_cast<int>(read.whole(next, "bed")),      static_cast<int>(read.whole(next, "inflow"))};
-    // Journals did not always have notes.
+    // Journals did not always have gauges and notes.
+    if (next.contains("gauge")) journal.next.gauge = static_cast<int>(read.whole(next, "gauge"));
     if (next.contains("note")) journal.next.note = static_cast<int>(read.whole(next, "note"));
     std::uint64_t before = 0;
     for (const json& entry : read.list(file, "actions")) {

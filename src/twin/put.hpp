@@ -8,6 +8,7 @@
 #include "scene/bed_layer.hpp"
 #include "scene/zone.hpp"
 #include "terrain/buildings.hpp"
+#include "terrain/gauge.hpp"
 #include "terrain/inflow.hpp"
 #include "terrain/release.hpp"
 #include "twin/action.hpp"
@@ -38,6 +39,11 @@ namespace talus::twin {
 [[nodiscard]] Result<terrain::Inflow> read_inflow(const nlohmann::json& action, const ActionContext& context,
                                                   const Setup& setup, const InflowSetup* existing,
                                                   const std::string& name);
+
+/// At a place or at a chainage. Errors: neither or both, beside the terrain or the flow path, the name of another.
+[[nodiscard]] Result<terrain::Gauge> read_gauge_place(const nlohmann::json& action, const ActionContext& context,
+                                                      const Setup& setup, const GaugeSetup* existing,
+                                                      const std::string& name);
 
 /// Errors: without a text, or beside the terrain.
 [[nodiscard]] Result<Note> read_note(const nlohmann::json& action, const ActionContext& context, const Note* existing,

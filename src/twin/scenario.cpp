@@ -131,6 +131,8 @@ Result<std::unique_ptr<Scenario>> Scenario::open_at(const Journal& journal, std:
     if (!setup) return Error{"first_setup: " + setup.error().message};
     auto parts = std::make_unique<Parts>(std::move(scene), std::move(options));
     parts->next = journal.next;
+    // Former journals have no number for gauges: those of the scene have the first ones.
+    parts->next.gauge = std::max(parts->next.gauge, static_cast<int>(parts->scene->gauges.size()) + 1);
     TALUS_TRY(parts->start(*setup));
     return std::unique_ptr<Scenario>(new Scenario(std::move(parts)));
 }

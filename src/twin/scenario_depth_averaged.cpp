@@ -162,7 +162,8 @@ std::function<json()> Scenario::compared_with(std::shared_ptr<const DepthAverage
     }
     if (!begin_alike(parts_->setup(), run.begun_with())) {
         differs.emplace_back(
-            "Beds or inflows were changed: the depth-averaged model has them already, the particles after a restart.");
+            "Beds, inflows or gauges were changed: the depth-averaged model has them already, the particles after a "
+            "restart.");
     }
     return [scene = parts_->scene, particles = std::move(particles), other = std::move(other), over,
             differs = std::move(differs)] {

@@ -109,6 +109,15 @@ json building_json(const BuildingSetup& building) {
     return entry;
 }
 
+json gauge_json(const GaugeSetup& gauge) {
+    return {{"id", gauge.id},
+            {"name", gauge.body->name},
+            {"x_m", gauge.body->at.x},
+            {"y_m", gauge.body->at.y},
+            {"chainage_m", number_or_null<json>(gauge.body->chainage)},
+            {"from_scene", gauge.scene_index >= 0}};
+}
+
 json note_json(const NoteSetup& note) {
     return {{"id", note.id}, {"name", note.body->name}, {"x_m", note.body->at.x}, {"y_m", note.body->at.y}};
 }
@@ -144,7 +153,12 @@ json Scenario::setup_json() const {
         entry["in_force"] = in_force(inflow, p.run->begun_with().inflows);
         inflows.push_back(std::move(entry));
     }
-    json notes = json::array();
+    json gauges = json::array(), notes = json::array();
+    for (const GaugeSetup& gauge : setup.gauges) {
+        json entry = gauge_json(gauge);
+        entry["in_force"] = in_force(gauge, p.run->begun_with().gauges);
+        gauges.push_back(std::move(entry));
+    }
     for (const NoteSetup& note : setup.notes) notes.push_back(note_json(note));
     json changes = json::array();
     for (const Parts::ChangeOnTheWay& change : p.changes) {
@@ -159,6 +173,7 @@ json Scenario::setup_json() const {
             {"zones", zones},
             {"beds", beds},
             {"inflows", inflows},
+            {"gauges", gauges},
             {"notes", notes},
             {"pending_restart", !begin_alike(setup, p.run->begun_with())},
             {"undo", p.undo.empty() ? json() : json(p.undo.back().sentence)},

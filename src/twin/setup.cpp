@@ -56,6 +56,11 @@ Setup setup_of(const scene::Scene& scene, NextNumbers& next) {
         setup.inflows.push_back(
             {fmt::format("inflow-{}", next.inflow++), std::make_shared<const terrain::Inflow>(inflow), index++, true});
     }
+    index = 0;
+    for (const terrain::Gauge& gauge : scene.gauges) {
+        setup.gauges.push_back(
+            {fmt::format("gauge-{}", next.gauge++), std::make_shared<const terrain::Gauge>(gauge), index++, true});
+    }
     return setup;
 }
 
@@ -66,6 +71,7 @@ scene::Scene scene_of(const scene::Scene& scene, const Setup& setup) {
     changed.buildings = bodies_of(setup.buildings);
     for (const BarrierSetup& barrier : setup.barriers) changed.buildings.push_back(*barrier.body);
     changed.inflows = bodies_of(setup.inflows);
+    changed.gauges = bodies_of(setup.gauges);
     changed.zones = bodies_of(setup.zones);
     scene::ZonesOnTerrain on_terrain = zones_on_terrain(changed.zones, changed.terrain);
     changed.cover = std::move(on_terrain.cover);
@@ -124,8 +130,12 @@ bool same_shape(const std::shared_ptr<const terrain::Inflow>& a, const std::shar
                       a->area == b->area && a->hydrograph == b->hydrograph);
 }
 
+bool same_shape(const std::shared_ptr<const terrain::Gauge>& a, const std::shared_ptr<const terrain::Gauge>& b) {
+    return a == b || a->at == b->at;
+}
+
 bool begin_alike(const Setup& a, const Setup& b) {
-    return same_shapes(a.beds, b.beds) && same_shapes(a.inflows, b.inflows);
+    return same_shapes(a.beds, b.beds) && same_shapes(a.inflows, b.inflows) && same_shapes(a.gauges, b.gauges);
 }
 
 const std::vector<const params::Parameter*>& live_parameters() {

@@ -13,6 +13,7 @@
 #include "scene/scene.hpp"
 #include "scene/zone.hpp"
 #include "terrain/buildings.hpp"
+#include "terrain/gauge.hpp"
 #include "terrain/inflow.hpp"
 #include "terrain/release.hpp"
 
@@ -67,6 +68,13 @@ struct InflowSetup {
     bool as_in_scene = false;
 };
 
+struct GaugeSetup {
+    std::string id;
+    std::shared_ptr<const terrain::Gauge> body;
+    int scene_index = -1;
+    bool as_in_scene = false;
+};
+
 /// What people have written at a place; the run does not know of it.
 struct Note {
     std::string name;  ///< the text
@@ -84,14 +92,15 @@ struct Setup {
     std::vector<BarrierSetup> barriers;
     std::vector<BuildingSetup> buildings;
     std::vector<ZoneSetup> zones;  ///< later ones override earlier ones
-    std::vector<BedSetup> beds;    ///< later ones override earlier ones; these and inflows apply from time 0
+    std::vector<BedSetup> beds;    ///< later ones override earlier ones; these, inflows and gauges apply from time 0
     std::vector<InflowSetup> inflows;
+    std::vector<GaugeSetup> gauges;
     std::vector<NoteSetup> notes;
 };
 
 /// Numbers of the next new ids; an id is never used twice.
 struct NextNumbers {
-    int release = 1, barrier = 1, building = 1, zone = 1, bed = 1, inflow = 1, note = 1;
+    int release = 1, barrier = 1, building = 1, zone = 1, bed = 1, inflow = 1, gauge = 1, note = 1;
 };
 
 /// The scene as it was loaded; `next` is set to follow it.
@@ -132,6 +141,9 @@ template <class Entry>
 [[nodiscard]] bool same_shape(const std::shared_ptr<const terrain::Inflow>& a,
                               const std::shared_ptr<const terrain::Inflow>& b);
 
+[[nodiscard]] bool same_shape(const std::shared_ptr<const terrain::Gauge>& a,
+                              const std::shared_ptr<const terrain::Gauge>& b);
+
 /// Whether this holds for two lists, pair by pair.
 template <class Entry>
 [[nodiscard]] bool same_shapes(const std::vector<Entry>& a, const std::vector<Entry>& b) {
@@ -139,7 +151,7 @@ template <class Entry>
                       [](const Entry& p, const Entry& q) { return same_shape(p.body, q.body); });
 }
 
-/// Whether runs of both would begin with the same beds and inflows.
+/// Whether runs of both would begin with the same beds, inflows and gauges.
 [[nodiscard]] bool begin_alike(const Setup& a, const Setup& b);
 
 /// The keys of the material section that can change while debris moves, as declared for the scene file.

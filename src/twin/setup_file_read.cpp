@@ -45,6 +45,7 @@ class SetupReader {
     Result<ZoneSetup> read_zone(const json& file) const;
     Result<BedSetup> read_bed(const json& file) const;
     Result<InflowSetup> read_inflow(const json& file) const;
+    Result<GaugeSetup> read_gauge(const json& file) const;
     Result<NoteSetup> read_note(const json& file) const;
 
   private:
@@ -60,12 +61,14 @@ class SetupReader {
     static Status read_parts(const json& file, const char* key, const char* number, double Part::*value,
                              std::vector<Part>& parts);
     static Result<std::string> read_name(const json& file);
+    static Status check_keys_and_id(const json& file, std::initializer_list<std::string_view> keys);
     /// Refuses keys other than the id and those of such an entry.
     template <class Spec>
     static Status check_entry(const json& file, std::initializer_list<std::string_view> keys);
     /// The id, and its index among `count` entries of the scene; `key`: present only in a changed one.
     template <class Entry>
     static Status read_origin(const json& file, const char* key, std::size_t count, Entry& setup);
+    static Result<PlanPoint> read_place(const json& file);
     static Result<int> read_index(const json& object, std::size_t count);
 
     const scene::Scene& scene_;
@@ -149,6 +152,11 @@ Status SetupReader::read_parts(const json& file, const char* key, const char* nu
         part.*value = **given;
     }
     return {};
+}
+
+Status SetupReader::check_keys_and_id(const json& file, std::initializer_list<std::string_view> keys) {
+    if (!file.is_object() || !file.contains("id") || !file["id"].is_string()) return bad("id", file);
+    return check_keys(file, keys);
 }
 
 template <class Spec>
@@ -291,15 +299,34 @@ Result<InflowSetup> SetupReader::read_inflow(const json& file) const {
     return setup;
 }
 
-Result<NoteSetup> SetupReader::read_note(const json& file) const {
-    if (!file.is_object() || !file.contains("id") || !file["id"].is_string()) return bad("id", file);
-    TALUS_TRY(check_keys(file, {"id", "name", "x_m", "y_m"}));
-    Note note;
-    TALUS_ASSIGN(note.name, read_name(file));
+Result<PlanPoint> SetupReader::read_place(const json& file) {
     const auto x = read_number(file, "x_m", {}, "m"), y = read_number(file, "y_m", {}, "m");
     if (!x || !*x) return bad("x_m", file);
     if (!y || !*y) return bad("y_m", file);
-    note.at = {**x, **y};
+    return PlanPoint{**x, **y};
+}
+
+Result<GaugeSetup> SetupReader::read_gauge(const json& file) const {
+    GaugeSetup setup;
+    TALUS_TRY(check_keys_and_id(file, {"id", "scene", "name", "x_m", "y_m", "chainage_m"}));
+    TALUS_TRY(read_origin(file, "name", scene_.gauges.size(), setup));
+    terrain::Gauge gauge;
+    if (setup.scene_index >= 0) gauge = scene_.gauges[static_cast<std::size_t>(setup.scene_index)];
+    if (!setup.as_in_scene) {
+        TALUS_ASSIGN(gauge.name, read_name(file));
+        TALUS_ASSIGN(gauge.at, read_place(file));
+        TALUS_ASSIGN(const auto chainage, read_number(file, "chainage_m", {}, "m"));
+        gauge.chainage = chainage.value_or(std::numeric_limits<double>::quiet_NaN());
+    }
+    setup.body = std::make_shared<const terrain::Gauge>(std::move(gauge));
+    return setup;
+}
+
+Result<NoteSetup> SetupReader::read_note(const json& file) const {
+    TALUS_TRY(check_keys_and_id(file, {"id", "name", "x_m", "y_m"}));
+    Note note;
+    TALUS_ASSIGN(note.name, read_name(file));
+    TALUS_ASSIGN(note.at, read_place(file));
     return NoteSetup{file["id"], std::make_shared<const Note>(std::move(note))};
 }
 
@@ -307,11 +334,11 @@ Result<NoteSetup> SetupReader::read_note(const json& file) const {
 
 Result<Setup> read_setup(const json& file, const scene::Scene& scene) {
     if (!file.is_object()) return Error{fmt::format("setup = {}: must be an object", shown(file))};
-    const auto sections = {"material"sv, "releases"sv, "barriers"sv, "buildings"sv,
-                           "zones"sv,    "beds"sv,     "inflows"sv,  "notes"sv};
+    const auto sections = {"material"sv, "releases"sv, "barriers"sv, "buildings"sv, "zones"sv,
+                           "beds"sv,     "inflows"sv,  "gauges"sv,   "notes"sv};
     for (const std::string_view key : sections) {
         if (!file.contains(key)) {
-            if (key == "notes") continue;  // journals did not always have them
+            if (key == "gauges" || key == "notes") continue;  // journals did not always have them
             return Error{fmt::format("setup.{}: missing", key)};
         }
         if (key != "material" && !file[key].is_array()) {
@@ -340,6 +367,13 @@ Result<Setup> read_setup(const json& file, const scene::Scene& scene) {
     TALUS_TRY(read_all(file["beds"], setup.beds, "beds", [&](const json& e) { return reader.read_bed(e); }));
     TALUS_TRY(
         read_all(file["inflows"], setup.inflows, "inflows", [&](const json& e) { return reader.read_inflow(e); }));
+    if (!file.contains("gauges")) {
+        NextNumbers any;
+        setup.gauges = setup_of(scene, any).gauges;
+    } else {
+        TALUS_TRY(
+            read_all(file["gauges"], setup.gauges, "gauges", [&](const json& e) { return reader.read_gauge(e); }));
+    }
     TALUS_TRY(read_all(file.value("notes", json::array()), setup.notes, "notes",
                        [&](const json& e) { return reader.read_note(e); }));
     return setup;

@@ -1,3 +1,4 @@
+#include "core/number_or_null.hpp"
 #include "params/fields.hpp"
 #include "twin/json_keys.hpp"
 #include "twin/section_values.hpp"
@@ -72,6 +73,13 @@ json body_json(const terrain::Inflow& inflow) {
     return body;
 }
 
+json body_json(const terrain::Gauge& gauge) {
+    return {{"name", gauge.name},
+            {"x_m", gauge.at.x},
+            {"y_m", gauge.at.y},
+            {"chainage_m", number_or_null<json>(gauge.chainage)}};
+}
+
 /// The id, its index in the scene, and the body of a changed one.
 template <class Entry>
 json entry_json(const Entry& setup) {
@@ -91,6 +99,7 @@ json write_setup(const Setup& setup) {
                  {"zones", json::array()},
                  {"beds", json::array()},
                  {"inflows", json::array()},
+                 {"gauges", json::array()},
                  {"notes", json::array()}};
     for (const ReleaseSetup& release : setup.releases) {
         json entry = entry_json(release);
@@ -110,6 +119,7 @@ json write_setup(const Setup& setup) {
     for (const ZoneSetup& zone : setup.zones) file["zones"].push_back(entry_json(zone));
     for (const BedSetup& bed : setup.beds) file["beds"].push_back(entry_json(bed));
     for (const InflowSetup& inflow : setup.inflows) file["inflows"].push_back(entry_json(inflow));
+    for (const GaugeSetup& gauge : setup.gauges) file["gauges"].push_back(entry_json(gauge));
     for (const NoteSetup& note : setup.notes) {
         file["notes"].push_back(
             {{"id", note.id}, {"name", note.body->name}, {"x_m", note.body->at.x}, {"y_m", note.body->at.y}});

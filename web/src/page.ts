@@ -15,10 +15,10 @@ import { help, keys } from "./panels/keys";
 import { legends, scaleAndCompass } from "./panels/legends";
 import { measuring } from "./panels/measuring";
 import { controls } from "./panels/controls";
-import { notesPanel } from "./panels/notes";
 import { paneNames } from "./panels/pane_names";
 import { people } from "./panels/people";
 import { Picture } from "./panels/picture";
+import { pinsPanel } from "./panels/pins";
 import { balance, runCard } from "./panels/run_card";
 import { changedOnTheWay } from "./panels/scenarios";
 import { sessionButton } from "./panels/session";
@@ -97,7 +97,7 @@ function buildPage(page: HTMLElement, twin: Twin): void {
   const readings = tabs("Readings", [
     { name: "front", title: "Front", content: frontCharts(twin, secondModel.element) },
     { name: "time", title: "Time", content: timeCharts(twin) },
-    { name: "points", title: "Points", content: h("div", {}, notesPanel(twin, stage), probes.element) },
+    { name: "points", title: "Points", content: h("div", {}, pinsPanel(twin, stage), probes.element) },
     { name: "section", title: "Section", content: section.element },
     { name: "impact", title: "Impact", content: impactsPanel(twin, stage) },
     { name: "balance", title: "Balance", content: balance(twin) },

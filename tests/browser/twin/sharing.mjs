@@ -83,7 +83,7 @@ export async function testSharing(run) {
     await ben.context().close();
   });
 
-  await run.check("a note that one pins is seen by the other, goes to its place, and is undone", async () => {
+  await run.check("a note and a gauge that one puts on the ground are seen by the other, changed, removed and undone", async () => {
     const eve = await run.open(server.viewer, { ...small, name: "Eve" });
     await ada.locator("[data-tab=points]").click();
     await ada.click("button:has-text('Pin a note')");
@@ -108,6 +108,16 @@ export async function testSharing(run) {
     await ada.click(".controls button:has-text('Undo')");
     await until(() => seen(eve), (texts) => texts.includes("Culvert cleared"), "the note that came back");
     await ada.click(".controls button:has-text('Undo')");
+    await ada.click("button:has-text('Add a gauge')");
+    await clickGround(ada, 0.45, 0.5);
+    await ada.fill("[aria-label='Name of the gauge']", "Footbridge");
+    await ada.keyboard.press("Enter");
+    await until(() => eve.locator(".pins.gauges").textContent(), (text) => /Footbridge/.test(text), "the gauge in the other's list");
+    await ada.click("[title^='Back to time 0']");
+    await eve.locator("[data-tab=impact]").click();
+    await until(() => eve.locator(".impacts.gauges tbody th").allTextContents(), (names) => names.includes("Footbridge"), "what the gauge reads");
+    await ada.click("[aria-label='Remove the gauge “Footbridge”']");
+    await until(() => eve.locator(".pins.gauges").textContent(), (text) => !/Footbridge/.test(text), "no gauge");
     await eve.context().close();
   });
 

@@ -82,8 +82,8 @@ export function timeCharts(twin: Twin): HTMLElement {
   const speed = new Chart({ title: "Speed", x: time, y: { label: "Speed", unit: "m/s" }, curves: [], empty: "No speeds yet." });
   const energy = new Chart({ title: "Energy", x: time, y: { label: "Energy", unit: "MJ" }, curves: [], empty: "No energies yet." });
   const gauges = new Chart({ title: "Depth at the gauges", x: time, y: { label: "Depth", unit: "m" }, curves: [], empty: "No debris at the gauges yet." });
-  const all = [volume, speed, energy, ...(twin.scene.gauges.length > 0 ? [gauges] : [])];
-  watchAll([twin.shown, ...twin.every("series"), ...twin.every("setup"), twin.replay_s], () => {
+  const all = [volume, speed, energy, gauges];
+  watchAll([twin.shown, ...twin.every("series"), ...twin.every("setup"), ...twin.every("gauges"), twin.replay_s], () => {
     const two = twin.shown.value.length > 1;
     const put = (chart: Chart, list: Plotted[], unit: string, factor = 1): void => {
       const tables: { x: Column; y: Column }[] = [];
@@ -104,8 +104,9 @@ export function timeCharts(twin: Twin): HTMLElement {
     const depths = twin.shown.value.flatMap((name, i) => {
       const series = seriesUntil(twin.cells[name].series.value, twin.replay_s.value);
       return probeColours.slice(0, series?.gauges.depth_m.length ?? 0).map((colour, k) => ({ table: { x: series?.gauges.time_s ?? [], y: series?.gauges.depth_m[k] ?? [] },
-        curve: { label: `${twin.scene.gauges[k].name}${two ? ` ${name}` : ""}`, colour: i === 1 ? besideColour(colour) : colour, unit: "m", dashed: i === 1 } }));
+        curve: { label: `${twin.cells[name].gauges.value?.[k]?.name ?? `gauge ${k + 1}`}${two ? ` ${name}` : ""}`, colour: i === 1 ? besideColour(colour) : colour, unit: "m", dashed: i === 1 } }));
     });
+    gauges.element.hidden = twin.shown.value.every((name) => (twin.cells[name].setup.value?.gauges.length ?? 0) === 0);
     gauges.update(depths.length > 0 ? joined(depths.map((d) => d.table)) : [[]], depths.map((d) => d.curve));
     put(volume, volumes, "m3");
     put(speed, [{ column: "largest_speed_mps", label: "Largest speed", colour: "#0b5fa5" }], "m/s");

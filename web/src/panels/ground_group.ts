@@ -11,7 +11,7 @@ const shapes: readonly Shape[] = ["zone", "bed", "inflow"];
 export function groundGroup(twin: Twin, drawing: Drawing): HTMLElement {
   const count = h("span", { class: "count" });
   const restart = button("Restart", { icon: "restart", class: "small", onclick: () => void twin.restart() });
-  const pending = h("div", { class: "pending", role: "status" }, h("span", {}, "Changes to beds and inflows take effect at the next restart."), restart);
+  const pending = h("div", { class: "pending", role: "status" }, h("span", {}, "Changes to beds, inflows and gauges take effect at the next restart."), restart);
   const group = h("details", { class: "ground-group" }, h("summary", {}, h("h2", {}, "Ground and inflow"), count), pending,
     ...shapes.map((shape) => shapeSection(twin, drawing, shape)));
   let before = 0;

@@ -7,7 +7,7 @@ import type { Twin } from "../state/twin";
 import { dialog, openDialog } from "../ui/dialog";
 import { h } from "../ui/dom";
 import { toggleMeasuring } from "./measuring";
-import { togglePinning } from "./notes";
+import { togglePinning } from "./pins";
 import { toggle } from "./transport";
 import { isTyped } from "../ui/typed";
 import type { ViewBar } from "./view_bar";
@@ -15,7 +15,7 @@ import type { ViewBar } from "./view_bar";
 const shortcuts: [string, [string, string][]][] = [
   ["Time", [["Space", "Run or pause (when no control has the focus)"], [".", "One step"], ["R", "Play or pause the recording"], ["L", "Return to live"]]],
   ["View (focus it with V)", [["Arrow keys", "Turn and tilt"], ["Shift + arrow keys", "Move"], ["+ and −", "Zoom"], ["1, 2, 3", "Orbit, fly, follow the front"],
-    ["W A S D, Q E", "Fly"], ["T", "Top view"], ["F", "Whole scene"], ["N", "Natural look, or colours of a legend"], ["M", "Measure on the ground"], ["P", "Pin a note"], ["Alt + 1 … 9", "Saved view"]]],
+    ["W A S D, Q E", "Fly"], ["T", "Top view"], ["F", "Whole scene"], ["N", "Natural look, or colours of a legend"], ["M", "Measure on the ground"], ["P", "Pin a note"], ["G", "Add a gauge"], ["Alt + 1 … 9", "Saved view"]]],
   ["Drawing", [["Space", "Point in the middle of the view"], ["Enter", "Finish"], ["Backspace", "Remove the last point"], ["Escape", "Cancel, or clear the selection"],
     ["X", "Barrier: across the flow path, nearest to the pointer"], ["Delete", "Remove the selection"], ["Arrow keys on a corner", "Move it by 1 m"]]],
   ["Everywhere", [["Ctrl + Z", "Undo; in a field with text that is not sent yet, undo typing"], ["Ctrl + Shift + Z", "Redo"], ["?", "This help"]]],
@@ -23,7 +23,7 @@ const shortcuts: [string, [string, string][]][] = [
 
 export function help(): void {
   openDialog(dialog("Help", h("p", { class: "hint" },
-    "Run the simulation below. Controls on the left change it: draw a barrier across the path, raise the friction, trigger a release. A change to a run that has begun starts a new scenario from time 0, beside the first, or takes effect from the next step: the page asks the first time, and “Edits” below the list of scenarios holds the choice. Changes to beds and inflows take effect at the next restart. Readings are on the right. The bar at the bottom scrubs through the recording."),
+    "Run the simulation below. Controls on the left change it: draw a barrier across the path, raise the friction, trigger a release. A change to a run that has begun starts a new scenario from time 0, beside the first, or takes effect from the next step: the page asks the first time, and “Edits” below the list of scenarios holds the choice. Changes to beds, inflows and gauges take effect at the next restart. Readings are on the right. The bar at the bottom scrubs through the recording."),
   ...shortcuts.map(([title, keys]) => h("section", { class: "shortcuts" }, h("h3", {}, title),
     h("dl", {}, ...keys.flatMap(([key, what]) => [h("dt", {}, key), h("dd", {}, what)]))))));
 }
@@ -66,7 +66,8 @@ export function keys(twin: Twin, stage: Stage, drawing: Drawing, bar: ViewBar, t
       case "f": stage.rig.fit(); break;
       case "n": twin.setLook(twin.natural ? "scientific" : "natural"); break;
       case "m": toggleMeasuring(twin); break;
-      case "p": togglePinning(twin); break;
+      case "p": togglePinning(twin, "note"); break;
+      case "g": togglePinning(twin, "gauge"); break;
       case "x": drawing.snap(); break;
       case "Enter":
         if (drawing.shape === null) return;

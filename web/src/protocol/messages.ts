@@ -179,6 +179,19 @@ export interface Inflow extends InflowValues {
 }
 /** A change of a run after its first step. */
 export interface ChangeOnTheWay { time_s: number; by: string; sentence: string }
+/** Where depth and speed are recorded. */
+export interface PlacedGauge {
+  id: string;
+  name: string;
+  x_m: number;
+  y_m: number;
+  /** null: given as a place. */
+  chainage_m: number | null;
+  from_scene: boolean;
+  /** false: from the next restart. */
+  in_force: boolean;
+}
+
 /** What people have written at a place; the run does not know of it. */
 export interface Note {
   id: string;
@@ -201,8 +214,9 @@ export interface Setup {
   zones: Zone[];
   beds: Bed[];
   inflows: Inflow[];
+  gauges: PlacedGauge[];
   notes: Note[];
-  /** Beds or inflows differ from those at the run's start. */
+  /** Beds, inflows or gauges differ from those at the run's start. */
   pending_restart: boolean;
   undo: string | null;
   redo: string | null;
@@ -363,8 +377,9 @@ export type Action =
   | { action: "put_zone"; id?: string; name?: string; polygon?: Point[]; move_m?: Point } & Partial<ZoneValues>
   | { action: "put_bed"; id?: string; name?: string; polygon?: Point[]; move_m?: Point } & Partial<BedValues>
   | { action: "put_inflow"; id?: string; name?: string; line?: Point[]; polygon?: Point[]; move_m?: Point; hydrograph?: HydrographRow[] } & Partial<InflowValues>
+  | { action: "put_gauge"; id?: string; name?: string; x_m?: number; y_m?: number; chainage_m?: number }
   | { action: "put_note"; id?: string; name?: string; x_m?: number; y_m?: number }
-  | { action: "remove_note" | "trigger_release" | "remove_release" | "remove_barrier" | "remove_building" | "remove_zone" | "remove_bed" | "remove_inflow"; id: string };
+  | { action: "remove_gauge" | "remove_note" | "trigger_release" | "remove_release" | "remove_barrier" | "remove_building" | "remove_zone" | "remove_bed" | "remove_inflow"; id: string };
 export interface Done { done: string; created: string | null }
 /** object: id of what the action made. */
 export interface NewScenario { done: string; created: ScenarioName; object: string | null }

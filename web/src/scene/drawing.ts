@@ -191,9 +191,10 @@ export class Drawing {
     if (!hit) return;
     const point: Point = [hit.world[0], hit.world[1]];
     if (this.shape !== null) this.addPoint(point);
-    else if (this.twin.tool.value.kind === "note") {
+    else if (this.twin.tool.value.kind === "pin") {
+      const { what } = this.twin.tool.value;
       this.twin.tool.value = { kind: "none" };
-      this.twin.pinned.value = point;
+      this.twin.pinned.value = { what, at: point };
     } else if (this.twin.tool.value.kind === "probe") {
       const used = this.twin.probes.value.length;
       this.twin.probes.value = [...this.twin.probes.value, { at: point, colour: probeColours[used % probeColours.length], series: {} }].slice(-6);

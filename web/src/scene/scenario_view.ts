@@ -224,7 +224,7 @@ export class ScenarioView {
         }
       }
       // Below their places, where observed front velocities and chainages of the same places do not hide them.
-      for (const gauge of scene.gauges) {
+      for (const gauge of this.setup?.gauges ?? []) {
         labels.push({ at: relief.local(gauge.x_m, gauge.y_m, 0.5), text: gauge.name, kind: "gauge", priority: 5, below: true });
       }
       for (const release of this.setup?.releases ?? []) {

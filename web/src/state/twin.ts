@@ -27,7 +27,9 @@ export interface ScenarioCells {
 }
 
 export type Shape = "release" | "barrier" | "building" | "zone" | "bed" | "inflow";
-export type Tool = { kind: "none" } | { kind: "draw"; shape: Shape } | { kind: "probe" } | { kind: "section" } | { kind: "measure" } | { kind: "note" };
+export type Tool = { kind: "none" } | { kind: "draw"; shape: Shape } | { kind: "probe" } | { kind: "section" } | { kind: "measure" } | { kind: "pin"; what: Pinned };
+/** What is put at one place of the ground. */
+export type Pinned = "gauge" | "note";
 export interface Selection { shape: Shape; id: string }
 export interface Probe { at: Point; colour: string; series: Partial<Record<ScenarioName, ProbeSeries>> }
 export type SurfaceColour = "off" | "depth" | "speed";
@@ -93,8 +95,8 @@ export class Twin {
   readonly inflowByLine = new Cell(true);
   readonly probes = new Cell<readonly Probe[]>([]);
   readonly section = new Cell<readonly Point[] | null>(null);
-  /** Where a note is to be pinned; null once its text is asked for. */
-  readonly pinned = new Cell<Point | null>(null);
+  /** Where something is put; null once its name is asked for. */
+  readonly pinned = new Cell<{ what: Pinned; at: Point } | null>(null);
   /** Line or outline that is measured. */
   readonly measured = new Cell<readonly Point[] | null>(null);
 
@@ -192,9 +194,9 @@ export class Twin {
   get running(): boolean {
     return this.shown.value.some((name) => this.cells[name].state.value?.status === "running");
   }
-  /** What structures and gauges have met until a time, or until now; a scene without gauges is not asked about them. */
+  /** What structures and gauges have met until a time, or until now; a scenario without gauges is not asked about them. */
   readings(s: ScenarioName, time_s: number | null): Promise<[Impacts, readonly GaugeReading[]]> {
-    return Promise.all([this.api.impacts(s, time_s), this.scene.gauges.length > 0 ? this.api.gauges(s, time_s) : []]);
+    return Promise.all([this.api.impacts(s, time_s), (this.cells[s].setup.value?.gauges.length ?? 0) > 0 ? this.api.gauges(s, time_s) : []]);
   }
   /** The state at the displayed time. */
   shownState(scenario: ScenarioName = this.edited.value): State | null {
