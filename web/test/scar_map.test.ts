@@ -58,7 +58,7 @@ describe("contours", () => {
     for (const { level_m, points, index } of closed) {
       expect(points[0]).toEqual(points[points.length - 1]);
       expect(index).toBe(level_m % 25 === 0);
-      for (const [x, y] of points) expect(Math.abs(Math.hypot(x - 824081, y - 825081) - 2 * (100 - level_m))).toBeLessThan(0.15);
+      expect(Math.max(...points.map(([x, y]) => Math.abs(Math.hypot(x - 824081, y - 825081) - 2 * (100 - level_m))))).toBeLessThan(0.15);
       // Around the summit anticlockwise.
       const turned = points.slice(1).reduce((sum, [x, y], k) => sum + (points[k][0] - 824081) * (y - 825081) - (x - 824081) * (points[k][1] - 825081), 0);
       expect(turned / 2).toBeCloseTo(Math.PI * (2 * (100 - level_m)) ** 2, -2);
@@ -69,7 +69,7 @@ describe("contours", () => {
     const lines = contours(holed, 5);
     // Centres with data end at column 7 and begin again at column 13.
     const inHole = ([x, y]: Point): boolean => x > 824015.01 && x < 824026.99 && y > 825015.01 && y < 825026.99;
-    for (const { points } of lines) for (const point of points) expect(inHole(point)).toBe(false);
+    expect(lines.flatMap(({ points }) => points).filter(inHole)).toEqual([]);
     const parts = lines.filter(({ level_m }) => level_m === 20);
     expect(parts.map(({ points }) => points.map(([x]) => x))).toEqual([Array(8).fill(824021), Array(8).fill(824021)]);
   });
@@ -80,14 +80,15 @@ describe("contours", () => {
     expect(contours(saddle(6), 7).map(({ points }) => points.map(([x, y]) => Math.sign(x - 824010 - (y - 825010))))).toEqual([[1, 1], [-1, -1]]);
   });
   it("are every 1, 2 or 5 times a power of ten, closer the larger the map is", () => {
-    expect([150, 400, 90, 12, 2600].map((relief) => contourInterval(relief, 1))).toEqual([10, 50, 10, 1, 200]);
+    expect([150, 400, 90, 12, 2600].map((relief) => contourInterval(relief, 1))).toEqual([10, 20, 5, 1, 200]);
     expect([1, 2, 5, 20, 1e6].map((zoom) => contourInterval(150, zoom))).toEqual([10, 5, 2, 0.5, 0.1]);
     expect(contourInterval(0, 1)).toBe(1);
   });
   it("of a part of the map lie where those of the whole do", () => {
     const part = partOf(cone, 824070, 825070, 824100, 825100, 3);
     expect([part.cell, part.columns < 30]).toEqual([4, true]);
-    for (const { points, level_m } of contours(part, 5)) for (const [x, y] of points) expect(Math.abs(Math.hypot(x - 824081, y - 825081) - 2 * (100 - level_m))).toBeLessThan(1);
+    const off = contours(part, 5).flatMap(({ points, level_m }) => points.map(([x, y]) => Math.abs(Math.hypot(x - 824081, y - 825081) - 2 * (100 - level_m))));
+    expect([off.length > 20, Math.max(...off) < 1]).toEqual([true, true]);
     const moved = partOf(cone, 824073, 825071, 824103, 825101, 3);
     expect([(moved.west - part.west) % 4, (moved.south - part.south) % 4]).toEqual([0, 0]);
   });
@@ -118,7 +119,7 @@ describe("the way downhill", () => {
     const way = descent(valley, [824100.3, 825070.2]);
     const heights = heightsAlong(valley, way?.points ?? []);
     expect(way).toMatchObject({ end: "edge", hollow_m: 0 });
-    for (let k = 1; k < heights.length; ++k) expect(heights[k]).toBeLessThanOrEqual(heights[k - 1]);
+    expect(heights.filter((height, k) => height > heights[k - 1])).toEqual([]);
     expect(way?.points[0]).toEqual([824100.3, 825070.2]);
     expect(way?.points.at(-1)).toEqual([824001, 825041]);
   });

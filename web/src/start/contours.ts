@@ -12,7 +12,7 @@ export interface Contour {
 }
 
 /** About so many lines over the relief; steep parts have them closer. */
-const lines_over_relief = 16;
+const lines_over_relief = 24;
 const least_interval_m = 0.1;
 
 /** Vertical distance of contours, m: 1, 2 or 5 times a power of ten. `zoom`: how many times larger than the whole terrain the map is. */

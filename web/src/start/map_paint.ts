@@ -46,7 +46,7 @@ export class MapPaint {
     for (const { points, index, level_m } of lines) {
       const pixels = this.pixels(points);
       this.trace(pixels);
-      this.stroke(index ? contour_ink : "rgb(92 58 20 / 0.5)", index ? 1.6 : 0.8);
+      this.stroke(index ? contour_ink : "rgb(92 58 20 / 0.75)", index ? 1.6 : 0.8);
       const place = index ? this.labelPlace(pixels, labels) : null;
       if (place) {
         labels.push(place.at);

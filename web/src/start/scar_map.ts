@@ -35,7 +35,7 @@ export class ScarMap {
   private readonly place = h("output", { class: "muted scar-place" });
   private readonly told = h("p", { class: "hint", role: "status" });
   private readonly facts = h("p", { class: "scar-facts", "aria-live": "polite" });
-  private readonly about = h("span", { class: "muted" });
+  private readonly about = h("p", { class: "hint" });
   private readonly back = button("Undo corner", { icon: "undo", class: "small", onclick: () => this.undo() });
   private readonly again = button("Draw again", { class: "small", onclick: () => this.clear() });
   private readonly slope = h("input", { type: "checkbox", onchange: () => this.shade() });
@@ -50,7 +50,7 @@ export class ScarMap {
       button("Zoom out", { icon: "minus", bare: true, class: "bare small", onclick: () => this.zoom(1 / button_zoom) }),
       button("Fit to terrain", { icon: "fit", bare: true, class: "bare small", onclick: () => this.fit() }),
       h("label", { class: "check" }, this.slope, "Slope"), this.place),
-    this.legend, h("p", { class: "hint" }, this.about), this.told, this.facts);
+    this.legend, this.about, this.told, this.facts);
   private grid: Grid | null = null;
   private relief: Relief | null = null;
   private picture: HTMLCanvasElement | null = null;

@@ -48,7 +48,7 @@ export function shaded(grid: Grid, bySlope: boolean): HTMLCanvasElement {
       const lit = (light.up - east * light.east - north * light.north) / Math.sqrt(1 + east * east + north * north);
       const bright = Math.max(0, Math.min(1, lit));
       // Classes keep most of their colour in the shade.
-      const [share, colour] = bySlope ? [0.55 + 0.45 * bright, slopeClass(degrees(east, north)).colour] : [(60 + 190 * bright) / 255, [255, 255, 245] as const];
+      const [share, colour] = bySlope ? [0.72 + 0.28 * bright, slopeClass(degrees(east, north)).colour] : [(60 + 190 * bright) / 255, [255, 255, 245] as const];
       image.data.set([share * colour[0], share * colour[1], share * colour[2], 255], 4 * ((rows - 1 - row) * columns + column));
     }
   }
