@@ -2,7 +2,7 @@
 import { existsSync, mkdtempSync, rmSync } from "node:fs";
 import { tmpdir } from "node:os";
 import { join } from "node:path";
-import { assert, limit_ms, shows, startServer, until } from "./harness.mjs";
+import { assert, limit_ms, serveFrom, shows, startServer, until } from "./harness.mjs";
 
 /** An elevation model as an ASCII grid, which states no reference system: a slope of 60 x 50 cells of 5 m that falls to the west. */
 function asciiGrid() {
@@ -31,6 +31,7 @@ export async function testStart(run) {
   run.last = page;
   page.on("pageerror", (error) => run.problems.push(error.stack ?? String(error)));
   page.on("request", (request) => /^(data|blob):/.test(request.url()) || run.requests.push(request.url()));
+  if (process.env.TALUS_SITE) await serveFrom(page, process.env.TALUS_SITE);
   const { ask } = server;
 
   await run.check("the start page lists the built-in scene and opens it with the keyboard", async () => {
@@ -66,7 +67,7 @@ export async function testStart(run) {
     assert.deepEqual([state.step, state.hash], [3, hash]);
   });
 
-  await run.check("a new scene is made of a dropped terrain and a drawn scar, is run, and is downloaded", async () => {
+  await run.check("a new scene is made of a dropped terrain and a scar drawn at a zoom, has it where it was drawn, is run, and is downloaded", async () => {
     await page.goto(`http://127.0.0.1:${server.port}/#start`);  // the page loads itself anew
     await page.click("text=New scene");
     await drop(page, "[data-role=terrain]", "not_a_raster.tif", "hello");
@@ -76,11 +77,34 @@ export async function testStart(run) {
     await page.screenshot({ path: join(run.output, "new-scene-problem.png"), fullPage: true });
     await page.fill("[aria-label='EPSG code of the terrain']", "2326");
     await page.click("[data-role=terrain] >> text=Apply");
-    const map = page.locator("canvas.hillshade");
+    const map = page.locator("canvas.scar-map");
     await map.waitFor();
     await map.scrollIntoViewIfNeeded();
-    const { width, height } = await map.boundingBox();
-    for (const [u, v] of [[0.55, 0.4], [0.65, 0.4], [0.65, 0.55], [0.55, 0.55], [0.55, 0.4]]) await map.click({ position: { x: u * width, y: v * height } });
+    // Within its border, as positions of clicks are.
+    const { width, height } = await map.evaluate((e) => ({ width: e.clientWidth, height: e.clientHeight }));
+    const facts = () => page.textContent(".scar-facts");
+    // The terrain fits, 300 m x 250 m. Keys draw a square of 80 px around the middle, larger by the zoom of the button.
+    const whole = Math.min(width / 300, height / 250);
+    await map.focus();
+    await page.keyboard.press("+");
+    for (const key of ["ArrowRight", "Space", ...Array(5).fill("ArrowRight"), "Space", ...Array(5).fill("ArrowDown"), "Space", ...Array(5).fill("ArrowLeft"), "Space", "Enter"]) await page.keyboard.press(key);
+    const drawn = Number((await until(facts, (text) => /in plan/.test(text), "the outline drawn with keys")).match(/Release: ([\d\u202f]+)/)[1].replace("\u202f", ""));
+    assert.ok(Math.abs(drawn / (80 / (1.6 * whole)) ** 2 - 1) < 0.02, `${drawn} m² at ${whole} px/m`);
+    await page.click("text=Draw again");
+    assert.equal(await facts(), "");
+    await page.click("[aria-label='Fit to terrain']");
+    // The wheel turns around the pointer: the ground below it stays.
+    const at = [0.6 * width, 0.45 * height];
+    await map.hover({ position: { x: at[0], y: at[1] } });
+    await page.mouse.wheel(0, -280);
+    const ground = ([u, v], scale) => [824150 + (at[0] - width / 2) / whole + (u - at[0]) / scale, 825125 - (at[1] - height / 2) / whole - (v - at[1]) / scale];
+    const corners = [[0.55, 0.4], [0.65, 0.4], [0.65, 0.55], [0.55, 0.55]].map(([u, v]) => [Math.round(u * width), Math.round(v * height)]);
+    await map.hover({ position: { x: corners[0][0], y: corners[0][1] } });
+    const there = ground(corners[0], Math.exp(0.7) * whole);
+    await until(() => page.textContent(".scar-place"), (text) => Math.abs(text.split(", ")[0] - there[0]) < 0.3 && / m · slope 22°/.test(text.replace("\u202f", " ")), `the pointer reads ${there}`);
+    for (const [x, y] of [...corners, corners[0]]) await map.click({ position: { x, y } });
+    // Its slope is 21.8 degrees, and it falls to the west edge.
+    assert.match(await until(facts, (text) => /Flow path/.test(text), "the way downhill"), /slope 22°.*\(mean 21\.\d°\), to the edge of the terrain/);
     await page.locator("text=Ready to run").waitFor();
     assert.equal(await page.inputValue("[aria-label='Title of the scene']"), "west slope");
     await page.click("text=Volume");
@@ -91,6 +115,10 @@ export async function testStart(run) {
     await page.click("text=Create and open");
     await page.click("dialog .primary");
     await shows(page, () => document.querySelector(".topbar h1")?.textContent.includes("west slope") && document.querySelector(".transport"), "the new scene");
+    const ring = (await ask("scenarios/A/setup")).releases[0].polygons[0];
+    for (const corner of corners.map((pixel) => ground(pixel, Math.exp(0.7) * whole))) {
+      assert.ok(ring.some(([x, y]) => Math.hypot(x - corner[0], y - corner[1]) < 0.6), `${corner} is none of ${JSON.stringify(ring)}`);
+    }
     await page.click("[aria-label='Step']");
     await until(() => ask("scenarios/A/state"), (s) => s.step === 1, "a step of the new scene");
     assert.ok(existsSync(join(folder, "scenes", "west-slope", "scene.toml")));

@@ -5,13 +5,13 @@ import { bytes, fixed } from "../state/format";
 import { heightsText, heightUnit, heightUnits } from "../state/heights";
 import { choice } from "../ui/choice";
 import { button, h } from "../ui/dom";
-import { Hillshade } from "./hillshade";
+import { ScarMap } from "./scar_map";
 
 const check_ms = 500;
 
 const slots: readonly (readonly [DraftRole, string, string])[] = [
   ["terrain", "Terrain", "An elevation model: GeoTIFF, ASCII grid or another raster. Required."],
-  ["release", "Release", "Polygons, or a raster of thickness in metres. Or draw it on the hillshade."],
+  ["release", "Release", "Polygons, or a raster of thickness in metres. Or draw it on the map."],
   ["buildings", "Buildings", "Footprints (GeoPackage, GeoJSON, zipped Shapefile) or CityJSON, OBJ, glTF."],
   ["orthophoto", "Orthophoto", "A picture of the ground from above, with its position."],
   ["bundle", "A whole scene", "Instead of the files above: a ZIP archive saved by talus."],
@@ -29,7 +29,7 @@ export class NewScene {
   }), this.amount, this.unit);
   private readonly cards = new Map<DraftRole, { holder: HTMLElement; card: HTMLElement }>();
   private readonly mendings = h("div", { class: "new-mend" });
-  private readonly hillshade = new Hillshade(() => this.later());
+  private readonly map = new ScarMap(() => this.later());
   private readonly create = button("Create and open", { icon: "run", class: "primary", disabled: true, onclick: () => void this.finish() });
   readonly element: HTMLElement;
   private draft: Draft | null = null;
@@ -48,9 +48,9 @@ export class NewScene {
     this.element = h("section", { class: "new-scene", "aria-labelledby": "new-scene" },
       h("div", { class: "start-title" }, h("h2", { id: "new-scene" }, "New scene"), button("Discard", { class: "quiet", onclick: () => void this.discard() })),
       h("p", { class: "muted" }, `Drop files here. They stay on the computer that runs talus. Limits: ${bytes(limits.bytes)} together, ${Math.round(limits.cells / 1e6)} million cells.`),
-      h("div", { class: "new-columns" }, left, h("div", { class: "new-map" }, this.hillshade.element, this.amounts)),
+      h("div", { class: "new-columns" }, left, h("div", { class: "new-map" }, this.map.element, this.amounts)),
       this.said, h("div", { class: "row new-last" }, this.title, this.create));
-    this.hillshade.show(null);
+    this.map.show(null, null);
     this.amounts.hidden = true;
     this.say();
   }
@@ -105,12 +105,15 @@ export class NewScene {
       --this.busy;
       if (this.title.value === "" && draft.files.terrain) this.title.value = draft.files.terrain.name.replace(/\.[^.]*$/, "").replace(/[_-]+/g, " ");
       this.showFiles(draft);
-      if (JSON.stringify(before) !== JSON.stringify(draft.terrain)) this.hillshade.show(draft.terrain && draft.terrain.problem === null ? await this.api.reliefOfDraft(this.id) : null);
+      if (JSON.stringify(before) !== JSON.stringify(draft.terrain)) await this.showMap(draft);
       this.later(0);
     } catch (error) {
       this.busy = Math.max(0, this.busy - 1);
       this.complain(error instanceof Error ? error.message : String(error));
     }
+  }
+  private async showMap({ terrain }: Draft): Promise<void> {
+    this.map.show(terrain && terrain.problem === null ? await this.api.reliefOfDraft(this.id) : null, terrain?.cell_m ?? null);
   }
   private showFiles(draft: Draft): void {
     for (const [role, name, hint] of slots) {
@@ -124,7 +127,7 @@ export class NewScene {
     this.showAmounts(draft);
   }
   private showAmounts(draft: Draft): void {
-    const raster = draft.files.release?.kind === "raster" && this.hillshade.scar === null;
+    const raster = draft.files.release?.kind === "raster" && this.map.scar === null;
     this.amounts.hidden = draft.terrain === null || draft.terrain.problem !== null || raster;
   }
   /** What is wrong with the terrain, and what can be done about it. */
@@ -165,17 +168,17 @@ export class NewScene {
 
   private complain(sentence: string): void {
     this.create.disabled = true;
-    const outside = /lies outside|reaches beyond/.test(sentence) ? " Draw it on the hillshade, or use a terrain that covers it. Check the reference system of the file as well." : "";
+    const outside = /lies outside|reaches beyond/.test(sentence) ? " Draw it on the map, or use a terrain that covers it. Check the reference system of the file as well." : "";
     this.said.replaceChildren(h("div", { class: "card bad", role: "alert" }, h("b", {}, "Not ready to run"), h("p", {}, sentence + outside)));
   }
   private say(): void {
     const { terrain, files } = this.draft ?? { terrain: null, files: {} as Draft["files"] };
-    const next = terrain === null ? "Start by choosing a terrain." : terrain.problem !== null ? "The terrain cannot be used as it is; the reason is given below its name." : "Next, the release: choose a file, or draw its outline on the hillshade.";
+    const next = terrain === null ? "Start by choosing a terrain." : terrain.problem !== null ? "The terrain cannot be used as it is; the reason is given below its name." : "Next, the release: choose a file, or draw its outline on the map.";
     if (files.bundle === undefined) this.tell(next);
   }
   private get wanted(): { title: string; thickness_m: number | null; volume_m3: number | null; scar: [number, number][] | null } {
     const amount = this.amount.value === "" || this.amounts.hidden ? null : Number(this.amount.value);
-    return { title: this.title.value.trim(), thickness_m: this.byVolume ? null : amount, volume_m3: this.byVolume ? amount : null, scar: this.hillshade.scar };
+    return { title: this.title.value.trim(), thickness_m: this.byVolume ? null : amount, volume_m3: this.byVolume ? amount : null, scar: this.map.scar };
   }
   /** Checks it as soon as nothing is changed for a moment. */
   private later(wait = check_ms): void {
@@ -185,7 +188,7 @@ export class NewScene {
     ++this.asked;
     if (!draft) return;
     this.showAmounts(draft);
-    const ready = draft.files.bundle !== undefined || (draft.terrain !== null && draft.terrain.problem === null && (draft.files.release !== undefined || this.hillshade.scar !== null));
+    const ready = draft.files.bundle !== undefined || (draft.terrain !== null && draft.terrain.problem === null && (draft.files.release !== undefined || this.map.scar !== null));
     if (!ready) return this.say();
     this.timer = window.setTimeout(() => void this.check(), wait);
   }

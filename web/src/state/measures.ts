@@ -85,7 +85,8 @@ function along(line: readonly Point[], step: number): Point[] {
     return Array.from({ length: parts }, (_, s): Point => [x0 + ((point[0] - x0) * (s + 1)) / parts, y0 + ((point[1] - y0) * (s + 1)) / parts]);
   });
 }
-function within(ring: readonly Point[]): Point[] {
+/** Places spread over the inside of an outline, and its corners. */
+export function within(ring: readonly Point[]): Point[] {
   const [xs, ys] = [ring.map((p) => p[0]), ring.map((p) => p[1])];
   const [west, east, south, north] = [Math.min(...xs), Math.max(...xs), Math.min(...ys), Math.max(...ys)];
   const places = Array.from({ length: 400 }, (_, k): Point => [west + (((k % 20) + 0.5) / 20) * (east - west), south + ((Math.floor(k / 20) + 0.5) / 20) * (north - south)]);
