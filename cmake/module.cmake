@@ -96,7 +96,7 @@ function(talus_test name label)
     set(properties ${CMAKE_CURRENT_BINARY_DIR}/measured_tests.cmake)
     file(WRITE ${properties} "foreach(name IN LISTS test_${name}_TESTS)
   if(name MATCHES \"${talus_measured_tests}\")
-    set_tests_properties(\${name} PROPERTIES PROCESSORS 1024)  # more than there are: all of them
+    set_tests_properties(\${name} PROPERTIES RUN_SERIAL ON)
   endif()
 endforeach()
 ")
