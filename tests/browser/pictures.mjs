@@ -1,4 +1,5 @@
-// The pictures of the built-in scene in README.md and docs, made anew: docs/images/twin.webp, twin_compare.webp, both_models.webp, report_map.webp.
+// The pictures in README.md and docs, made anew: of the built-in scene docs/images/twin.webp, twin_compare.webp, both_models.webp,
+// report_map.webp; of each scene of the gallery gallery_<its folder>.webp.
 // Usage: node pictures.mjs TALUS FOLDER [NAME ...], of the program's present page and reports; without names all of them.
 import { execFileSync } from "node:child_process";
 import { mkdirSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from "node:fs";
@@ -117,6 +118,25 @@ const pictures = {
     await keep("report_map", await blank(), await page.locator("figure.map[data-layer^=peak_depth] > svg").first().screenshot());
   },
 };
+/** The map of a scene of the gallery that shows best what happens there. */
+const gallery = {
+  barrier: "peak_depth", check_dam: "peak_depth", flexible_net: "peak_depth", deflection_dam: "peak_depth", entrainment: "erosion_depth",
+  hydrograph: "peak_depth", two_surges: "deposit_depth", forest: "peak_speed", village: "peak_depth", hazard_zones: "hazard_zones",
+};
+for (const [example, layer] of Object.entries(gallery)) {
+  pictures[`gallery_${example}`] = async () => {
+    const out = join(work, example);
+    const folder = fileURLToPath(new URL(`../../examples/${example}`, import.meta.url));
+    const plan = layer === "hazard_zones" ? ["--plan", join(folder, "plan.toml")] : [];
+    execFileSync(talus, [plan.length ? "ensemble" : "run", join(folder, "scene.toml"), ...plan, "-o", out], { env: programEnvironment, stdio: "ignore" });
+    const page = await browser.newPage({ viewport: { width: 720, height: 900 } });
+    page.setDefaultTimeout(180_000);
+    await page.goto(pathToFileURL(join(out, "report.html")).href);
+    await page.locator(`.tabs button[data-layer^=${layer}]`).first().click();
+    await keep(`gallery_${example}`, await blank(), await page.locator(`figure.map[data-layer^=${layer}] > svg`).first().screenshot());
+    await page.close();
+  };
+}
 try {
   for (const [name, make] of Object.entries(pictures)) if (only.length === 0 || only.includes(name)) await make();
 } finally {
