@@ -42,7 +42,7 @@ describe("trees", () => {
     const all = treesOf(setup([forest(0.05)]), flat);
     const trees = treesOf(setup([forest(0.05)], {
       buildings: [{ footprint: [[square(5, 5, 30), square(10, 10, 20)]] }],
-      barriers: [{ line: [[65, 10], [90, 10], [90, 35]], thickness_m: 2 }],
+      barriers: [{ line: [[62, 62], [98, 62], [98, 98]], thickness_m: 2 }],
       releases: [{ polygons: [square(5, 65, 30)] }],
     }), flat);
     const built = ({ x, y }: { x: number; y: number }): boolean => within(x, y, 5, 5, 30) && !within(x, y, 10, 10, 20);
@@ -51,11 +51,11 @@ describe("trees", () => {
     expect(trees.filter(({ x, y }) => within(x, y, 10, 10, 20)).length).toBeGreaterThan(3);
     expect(all.filter(({ x, y }) => within(x, y, 4, 64, 32)).length).toBeGreaterThan(20);
     expect(trees.filter(({ x, y }) => within(x, y, 4, 64, 32))).toEqual([]);
-    const onWall = ({ x, y }: { x: number; y: number }): boolean => Math.abs(y - 10) < 2 && x > 65 && x < 92;
+    const onWall = ({ x, y }: { x: number; y: number }): boolean => Math.abs(y - 62) < 2 && x > 62 && x < 99;
     expect(all.filter(onWall).length).toBeGreaterThan(1);
     expect(trees.filter(onWall)).toEqual([]);
     // What a bent barrier goes round is forest.
-    expect(trees.filter(({ x, y }) => within(x, y, 75, 14, 11)).length).toBeGreaterThan(2);
+    expect(trees.filter(({ x, y }) => within(x, y, 82, 66, 11)).length).toBeGreaterThan(2);
   });
   it("do not stand on ground steeper than 55 degrees, beyond the terrain, or where it has no data", () => {
     const cliff = ground((x, y) => (y > 80 && x > 60 ? NaN : x < 50 ? 0 : 1.6 * (x - 50)));
