@@ -2,7 +2,7 @@
 import { mkdirSync } from "node:fs";
 import { join } from "node:path";
 import { writeGully } from "./gully.mjs";
-import { assert, boxOf, inControl, saved, until } from "./harness.mjs";
+import { assert, boxOf, clickGround, inControl, saved, until } from "./harness.mjs";
 
 /** Light and colours of a picture: shares of nearly white and nearly black pixels, mean lightness of 255, mean of red over blue. */
 async function lightOf(data) {
@@ -91,6 +91,30 @@ export async function testLook(run) {
     }
     await page.fill("[aria-label='Date and solar time of the light']", "2027-09-22T15:00");
     await run.back(page, clip, plain, "the light of before");
+  });
+
+  await run.check("a forest that is drawn has trees, which go with its undo", async () => {
+    const trees = () => page.evaluate(() => window.talusStats.trees);
+    plain ??= await run.still(page, clip);
+    assert.equal(await trees(), 0);
+    await page.locator(".ground-group > summary").click();
+    await page.click("[data-draw=zone]");
+    await page.locator(".draft:visible").getByText("Forest", { exact: true }).click();
+    for (const [u, v] of [[0.40, 0.42], [0.60, 0.42], [0.60, 0.58], [0.40, 0.58]]) await clickGround(page, u, v);
+    await page.keyboard.press("Enter");
+    const { zones: [zone] } = await until(() => own.ask("scenarios/A/setup"), ({ zones }) => zones.length === 1, "a zone");
+    const stems = zone.area_m2 * zone.stem_density_pm2;
+    assert.ok(stems > 20, `${stems} stems`);
+    await until(trees, (count) => count > 0.4 * stems && count < 1.1 * stems, `trees of ${stems} stems`);
+    const wooded = await run.colours(page, clip);
+    await run.shot(page, "53-forest");
+    const share = await page.evaluate(differing, [plain.png.toString("base64"), wooded.png.toString("base64")]);
+    assert.ok(share > 0.02, `other pixels on ${share} of the view`);
+    await page.locator(".stage canvas").focus();
+    await page.keyboard.press("Control+z");
+    await until(trees, (count) => count === 0, "no trees");
+    await run.back(page, clip, plain, "the ground without a forest");
+    await page.locator(".ground-group > summary").click();
   });
 
   await run.check("N changes to the colours of a legend and back; a layer is always in those colours", async () => {

@@ -45,6 +45,13 @@ export class Relief {
     const { west, south } = this.grid;
     return x >= west && y >= south && x <= west + this.width && y <= south + this.height;
   }
+  /** Whether a place lies on the terrain, where it has data. */
+  hasGround(x: number, y: number): boolean {
+    const { west, south, cell, columns, rows, values } = this.grid;
+    const column = Math.min(columns - 1, Math.floor((x - west) / cell));
+    const row = Math.min(rows - 1, Math.floor((y - south) / cell));
+    return this.contains(x, y) && !Number.isNaN(values[row * columns + column]);
+  }
   local(x: number, y: number, above = 0): Place {
     return [x - this.origin[0], y - this.origin[1], this.at(x, y) + above - this.origin[2]];
   }

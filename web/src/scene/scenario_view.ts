@@ -30,6 +30,8 @@ const shortened = (text: string): string => (text.length > 48 ? `${text.slice(0,
 
 const barrierColour = "#5d7f92";
 const pathColour = "#08364d";
+/** From the subtropics to cool hills; without a latitude as in temperate hills. */
+const coniferShare = (latitude_deg: number | null): number => Math.min(0.7, Math.max(0.05, (Math.abs(latitude_deg ?? 45) - 25) / 30));
 
 export interface Shared {
   scene: SceneInfo;
@@ -77,13 +79,13 @@ export class ScenarioView {
     this.trail = new Trail(scene.map, scene.origin);
     this.ground.layTrail(this.trail);
     this.houses = new Houses(shared.daylight.uniforms);
-    this.trees = new Trees(shared.daylight.uniforms);
+    this.trees = new Trees(this.ground.uniforms, coniferShare(scene.latitude_deg));
     this.debris = new Debris(1.25 * scene.particle_spacing_m, shared.speedRamp);
     this.rocks = new Rocks(this.debris.geometry, this.debris.uniforms, this.ground.uniforms);
     this.labels = new Labels(relief);
     this.areas = new DrawnAreas(relief);
     this.wideAreas = new DrawnAreas(relief);
-    this.three.add(this.ground.mesh, this.debris.points, this.rocks.rocks, this.rocks.spray, this.solids, this.houses.mesh, this.trees.mesh, this.outlines, this.path, this.overlay);
+    this.three.add(this.ground.mesh, this.debris.points, this.rocks.rocks, this.rocks.spray, this.solids, this.houses.mesh, ...this.trees.meshes, this.outlines, this.path, this.overlay);
     this.drawPath();
   }
 
@@ -142,7 +144,8 @@ export class ScenarioView {
     for (const building of setup.buildings) this.solids.add(houseSolid(building, relief, plainHouse));
     for (const barrier of setup.barriers) this.solids.add(barrierSolid(barrier, relief, barrierColour, this.shared.daylight));
     this.houses.build(setup.buildings, relief);
-    this.trees.plant(setup.zones, relief);
+    this.trees.plant(setup, relief);
+    this.trees.stand(this.relief);
     this.hideHouses();
     const areas: Area[] = [];
     for (const release of setup.releases) {
@@ -152,7 +155,7 @@ export class ScenarioView {
     }
     this.drawOutlines();
     this.ground.drape(this.areas.paint(areas), this.wideAreas.paint(groundAreas(setup)));
-    this.sky.aim(new Box3().setFromObject(this.solids));
+    this.sky.aim(new Box3().setFromObject(this.solids), this.trees.extent);
     this.shadowsDue = true;
     this.refreshLabels();
   }
@@ -174,6 +177,7 @@ export class ScenarioView {
     this.relief = depth ? this.shared.relief.lowered(depth) : this.shared.relief;
     this.labels.relief = this.relief;
     this.ground.sink(depth);
+    this.trees.stand(this.relief);
     this.drawPath();
     this.drawOutlines();
   }
@@ -191,6 +195,10 @@ export class ScenarioView {
       material.emissive.set(id === selected ? new Color("#1d86ab") : new Color(0));
       material.emissiveIntensity = 0.6;
     }
+  }
+  /** Of the next picture. */
+  get treesShown(): number {
+    return this.trees.shown;
   }
   solidAt(id: string): Vector3 | null {
     const group = this.solids.children.find((g) => g.userData["id"] === id);

@@ -5,6 +5,9 @@ import { airHead, type Daylight } from "./natural/daylight";
 /** Towards the sun of the scientific look: from the north-west, as maps are lit, so that relief is not perceived inverted. */
 const mapSun = new Vector3(-0.62, 0.5, 0.72).normalize();
 
+/** Of one map of shadows, whose cells are then a third of a metre wide. */
+const widestShadows_m = 600;
+
 const vertex = /* glsl */ `
   varying vec3 vDirection;
   void main() {
@@ -46,6 +49,8 @@ export class Sky {
   private readonly fill = new HemisphereLight(0xdfeaf5, 0xb3a48e, 1.75);
   private readonly dome: Mesh;
   private solids: Box3 | null = null;
+  private trees: Box3 | null = null;
+  private natural = false;
 
   constructor(scene: Scene, private readonly daylight: Daylight) {
     this.dome = new Mesh(
@@ -77,11 +82,20 @@ export class Sky {
     this.sun.intensity = natural ? 1 : 3.5;
     this.fill.intensity = natural ? 1 : 1.75;
     this.towards.copy(natural ? this.daylight.towards : mapSun);
-    if (this.solids) this.aim(this.solids);
+    this.natural = natural;
+    this.aimAgain();
   }
-  /** Makes shadows as sharp as the extent of the solids allows. */
-  aim(solids: Box3): void {
+  /** Makes shadows as sharp as the extent of the solids allows, and of the trees that the natural look has. */
+  aim(solids: Box3, trees: Box3): void {
     this.solids = solids;
+    this.trees = trees;
+    this.aimAgain();
+  }
+  private aimAgain(): void {
+    if (!this.solids || !this.trees) return;
+    const all = this.natural ? this.solids.clone().union(this.trees) : this.solids;
+    // Beyond, those of houses would be blurred.
+    const solids = this.solids.isEmpty() || all.getSize(new Vector3()).length() < widestShadows_m ? all : this.solids;
     const middle = solids.getCenter(new Vector3());
     this.sun.castShadow = !solids.isEmpty();
     // A light needs a direction also where it has nothing to cast a shadow of.

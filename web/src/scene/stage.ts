@@ -30,6 +30,7 @@ export interface Stats {
   particles: number;
   /** Of the last picture. */
   drawCalls: number;
+  trees: number;
   /** Of the natural look: 2 all, 1 and 0 less where graphics are slow. */
   detail: number;
   shownTime_s: number;
@@ -89,7 +90,7 @@ export class Stage {
   private swiped = false;
 
   constructor(readonly twin: Twin, readonly relief: Relief) {
-    this.stats = { frames: 0, script_ms: 0, draw_ms: 0, decode_ms: 0, unfold_ms: 0, upload_ms: 0, particles: 0, drawCalls: 0, detail: 2, shownTime_s: 0, pixelRatio: 1, sunk_m: {},
+    this.stats = { frames: 0, script_ms: 0, draw_ms: 0, decode_ms: 0, unfold_ms: 0, upload_ms: 0, particles: 0, drawCalls: 0, trees: 0, detail: 2, shownTime_s: 0, pixelRatio: 1, sunk_m: {},
       reads: twin.api.reads };
     this.renderer = new WebGLRenderer({ canvas: this.canvas, antialias: true, preserveDrawingBuffer: false, powerPreference: "high-performance" });
     this.renderer.shadowMap.enabled = true;
@@ -286,7 +287,7 @@ export class Stage {
     this.renderer.setScissorTest(true);
     this.stats.detail = this.renderer.getPixelRatio() >= Math.min(2, devicePixelRatio) ? 2 : this.resolution.detail;
     this.daylight.prepare(this.twin.natural, this.rig.mode === "plan", this.stats.detail);
-    this.stats.drawCalls = 0;
+    this.stats.drawCalls = this.stats.trees = 0;
     let more = false;
     for (let k = 0; k < this.drawn.length; ++k) {
       const view = this.drawn[k];
@@ -308,6 +309,7 @@ export class Stage {
       this.renderer.render(view.three, camera);
       this.stats.draw_ms = performance.now() - drawn;
       this.stats.drawCalls += this.renderer.info.render.calls;
+      this.stats.trees += view.treesShown;
       if (view.name === this.twin.edited.value) this.stats.shownTime_s = view.clock.time_s(now) ?? 0;
     }
     if (this.cameraMoved) {

@@ -1,18 +1,7 @@
 // Selects the shape on the ground for a click that hits no house, barrier or release.
 import type { Point, Setup } from "../protocol/messages";
-import { footprintArea, inside } from "./shapes";
+import { distanceToLine, footprintArea, inside } from "./shapes";
 import type { Selection } from "./twin";
-
-function distanceToLine([x, y]: Point, line: readonly Point[]): number {
-  let least = Infinity;
-  for (let k = 1; k < line.length; ++k) {
-    const [[x0, y0], [x1, y1]] = [line[k - 1], line[k]];
-    const squared = (x1 - x0) ** 2 + (y1 - y0) ** 2;
-    const t = squared > 0 ? Math.min(1, Math.max(0, ((x - x0) * (x1 - x0) + (y - y0) * (y1 - y0)) / squared)) : 0;
-    least = Math.min(least, Math.hypot(x - x0 - t * (x1 - x0), y - y0 - t * (y1 - y0)));
-  }
-  return least;
-}
 
 /**
  * An inflow's line within reach, else the smallest area around the place. One that covers much of the terrain would

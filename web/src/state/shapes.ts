@@ -33,6 +33,16 @@ export function inside(ring: readonly Point[], x: number, y: number): boolean {
   }
   return odd;
 }
+export function distanceToLine([x, y]: Point, line: readonly Point[]): number {
+  let least = Infinity;
+  for (let k = 1; k < line.length; ++k) {
+    const [[x0, y0], [x1, y1]] = [line[k - 1], line[k]];
+    const squared = (x1 - x0) ** 2 + (y1 - y0) ** 2;
+    const t = squared > 0 ? Math.min(1, Math.max(0, ((x - x0) * (x1 - x0) + (y - y0) * (y1 - y0)) / squared)) : 0;
+    least = Math.min(least, Math.hypot(x - x0 - t * (x1 - x0), y - y0 - t * (y1 - y0)));
+  }
+  return least;
+}
 /** Whether the ring crosses itself. */
 export function crossesItself(ring: readonly Point[]): boolean {
   const n = ring.length;

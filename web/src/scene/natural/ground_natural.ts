@@ -22,6 +22,11 @@ const head = /* glsl */ `
     return vec4((n.xy - 0.5) * 25.6 / size, n.zw);
   }
 
+  // turn: cosine and sine of an angle.
+  vec2 turned(vec2 at, vec2 turn) {
+    return vec2(turn.x * at.x - turn.y * at.y, turn.y * at.x + turn.x * at.y);
+  }
+
   // Smooth between cells: a cubic B-spline from four filtered readings (Sigg and Hadwiger 2005).
   vec2 smoothIn(sampler2D map, vec4 placing, vec2 at) {
     vec2 size = vec2(textureSize(map, 0));
@@ -46,17 +51,28 @@ const head = /* glsl */ `
   }
 
   Surface bareGround(vec3 at, vec3 n) {
-    vec4 wide = noiseAt(at.xy, 173.0), middle = noiseAt(at.yx + 17.0, 37.0), fine = noiseAt(at.xy + 5.0, 7.3);
-    vec4 grain = uDetail > 1.5 ? noiseAt(at.yx, 1.9) : vec4(0.0, 0.0, 0.5, 0.5);
+    // A tile repeats. Two wide ones, smooth and turned, bend the narrower ones and are themselves nowhere in step: no two copies of a tile look alike.
+    vec2 pixelX = dFdx(at.xy), pixelY = dFdy(at.xy);
+    float pixel = sqrt(max(dot(pixelX, pixelX), dot(pixelY, pixelY)));
+    float lod = max(3.0, log2(1.5 * pixel));
+    float wide = textureLod(uNoise, turned(at.xy, vec2(0.921, 0.390)) / 173.0, lod).z, wider = textureLod(uNoise, turned(at.xy, vec2(0.454, -0.891)) / 287.0, lod).z;
+    vec4 middle = noiseAt(turned(at.xy, vec2(0.788, 0.616)) + 34.0 * vec2(wide - 0.5, wider - 0.5), 37.0);
+    vec4 fine = noiseAt(at.xy + 4.5 * vec2(middle.z - 0.5, wide - 0.5), 7.3), grain = vec4(0.0, 0.0, 0.5, 0.5);
+    // Where a pixel holds much of a tile there is only its mean to see.
+    if (uDetail > 1.5 && pixel < 0.4) {
+      grain = textureGrad(uNoise, (at.yx + 0.9 * (fine.z - 0.5)) / 1.9, pixelX.yx / 1.9, pixelY.yx / 1.9);
+      grain.xy = (grain.xy - 0.5) * 25.6 / 1.9;
+    }
+    wide += 0.6 * (wider - 0.5);
     vec2 rough = 0.35 * fine.xy + 0.12 * grain.yx;
     float steep = 1.0 - n.z + 0.10 * (middle.z - 0.5) + 0.06 * (fine.z - 0.5);
-    vec3 grass = mix(vec3(0.066, 0.088, 0.032), vec3(0.165, 0.148, 0.072), smoothstep(0.35, 0.72, wide.z + 0.5 * (fine.z - 0.5)));
+    vec3 grass = mix(vec3(0.066, 0.088, 0.032), vec3(0.165, 0.148, 0.072), smoothstep(0.35, 0.72, wide + 0.5 * (fine.z - 0.5)));
     Surface s = Surface(grass * (0.75 + 0.5 * grain.z), rough, 0.0, 0.0);
     // Shrubs where the slope holds them: thickets with soft edges, and few between them.
-    float thicket = smoothstep(0.42, 0.62, wide.z + 0.5 * (middle.z - 0.5));
+    float thicket = smoothstep(0.42, 0.62, wide + 0.5 * (middle.z - 0.5));
     float shrub = smoothstep(0.46, 0.20, middle.w + 0.30 * (fine.z - 0.5) + 0.45 * (0.5 - thicket));
     lay(s, vec3(0.034, 0.052, 0.020) * (0.5 + fine.z + 0.5 * grain.z), 1.3 * rough, 0.0, (0.1 + 0.72 * thicket) * shrub * smoothstep(0.30, 0.2, steep));
-    float soil = smoothstep(0.17, 0.25, steep + 0.10 * (wide.z - 0.5)) * smoothstep(0.40, 0.62, fine.z + 0.6 * (middle.z - 0.35));
+    float soil = smoothstep(0.17, 0.25, steep + 0.10 * (wide - 0.5)) * smoothstep(0.40, 0.62, fine.z + 0.6 * (middle.z - 0.35));
     lay(s, mix(vec3(0.20, 0.128, 0.070), vec3(0.27, 0.20, 0.13), grain.z), 1.4 * rough, 0.0, 0.85 * soil);
     float rock = smoothstep(0.27, 0.34, steep);
     if (rock > 0.0 && uDetail > 0.5) {

@@ -1,111 +1,101 @@
-// Trees in forest zones: as many stems as the zone has, as thick as they are, at places that are always the same. One mesh, one call.
-import { BufferAttribute, BufferGeometry, Color, CylinderGeometry, IcosahedronGeometry, InstancedMesh, Matrix4, MeshLambertMaterial, type IUniform } from "three";
-import type { Point, Zone } from "../../protocol/messages";
+// Trees of forest zones: two meshes, of broadleaved trees and of conifers, whose places change with the setup only.
+import { Box3, Color, InstancedMesh, Matrix4, MeshLambertMaterial, Vector3, type BufferGeometry, type IUniform } from "three";
 import type { Relief } from "../relief";
+import { mostTrees, treesOf, type Planted, type Tree } from "./forest";
 import { lit } from "./lit";
 import { scattered } from "./noise";
+import { broadleaf, conifer } from "./tree_shapes";
 
-/** Of one view: beyond it trees are farther apart than the zone has them. */
-export const mostTrees = 4000;
-/** Height over stem diameter. */
-const slenderness = 45;
+/** Stems stand the flow, in the model too; crowns over deep debris would hide it. */
+const shader = {
+  vertexHead: /* glsl */ `
+    attribute float aCrown;
+    uniform sampler2D uTrail;
+    uniform vec4 uTrailPlacing;
+    varying vec4 vLeaf;
+  `,
+  place: /* glsl */ `
+    vLeaf = vec4(position + instanceMatrix[3].xyz * 0.37, aCrown);
+    vec2 trailAt = (instanceMatrix[3].xy - uTrailPlacing.xy) * uTrailPlacing.zw;
+    bool mapped = uTrailPlacing.z > 0.0 && all(greaterThan(trailAt, vec2(0.0))) && all(lessThan(trailAt, vec2(1.0)));
+    if (mapped && 5.0 * texture2D(uTrail, trailAt).r > 1.0) transformed *= aCrown > 0.5 ? vec3(0.0) : vec3(1.0, 1.0, 0.6);
+  `,
+  head: "varying vec4 vLeaf;",
+  colour: /* glsl */ `
+    float leaves = texture2D(uNoise, vec2(vLeaf.x + 0.6 * vLeaf.y, vLeaf.z * 2.0 - 0.5 * vLeaf.y) * 0.7).b;
+    diffuseColor.rgb *= mix(1.0, 0.25 + 1.5 * leaves, vLeaf.w);
+  `,
+};
 
-export interface Tree { x: number; y: number; height: number; crown: number; number: number }
-
-function inside(polygon: readonly (readonly Point[])[], x: number, y: number): boolean {
-  let within = false;
-  for (const ring of polygon) {
-    for (let k = 0, last = ring.length - 1; k < ring.length; last = k++) {
-      const [ax, ay] = ring[k];
-      const [bx, by] = ring[last];
-      if (ay > y !== by > y && x < ((bx - ax) * (y - ay)) / (by - ay) + ax) within = !within;
-    }
-  }
-  return within;
-}
-
-/** Stems on a jittered grid whose cells are as large as the ground that a tree has. */
-export function treesOf(zones: readonly Zone[], most = mostTrees): Tree[] {
-  const forests = zones.filter((zone) => (zone.stem_density_pm2 ?? 0) > 0 && zone.polygons.length > 0);
-  const wanted = forests.reduce((sum, zone) => sum + zone.area_m2 * (zone.stem_density_pm2 ?? 0), 0);
-  const thinned = Math.min(1, most / Math.max(1, wanted));
-  const trees: Tree[] = [];
-  for (const zone of forests) {
-    const step = 1 / Math.sqrt((zone.stem_density_pm2 ?? 1) * thinned);
-    const height = Math.min(28, Math.max(3, slenderness * (zone.stem_diameter_m ?? 0.25)));
-    for (const polygon of zone.polygons) {
-      const xs = polygon[0].map((p) => p[0]);
-      const ys = polygon[0].map((p) => p[1]);
-      for (let j = Math.floor(Math.min(...ys) / step); j <= Math.max(...ys) / step; ++j) {
-        for (let i = Math.floor(Math.min(...xs) / step); i <= Math.max(...xs) / step; ++i) {
-          const x = (i + scattered(i, j, 1)) * step;
-          const y = (j + scattered(i, j, 2)) * step;
-          if (!inside(polygon, x, y) || trees.length >= most) continue;
-          const grown = 0.65 + 0.5 * scattered(i, j, 3);
-          trees.push({ x, y, height: grown * height, crown: Math.min(0.26 * height, 0.62 / Math.sqrt(zone.stem_density_pm2 ?? 1)) * (0.8 + 0.5 * scattered(i, j, 4)), number: i * 7919 + j });
-        }
-      }
-    }
-  }
-  return trees;
-}
-
-/** A tree of height and crown radius 1: a stem, and a crown of uneven height that is darker below. */
-function shape(): BufferGeometry {
-  const stem = new CylinderGeometry(0.035, 0.06, 0.5, 5, 1, true).toNonIndexed().rotateX(Math.PI / 2).translate(0, 0, 0.25);
-  const crown = new IcosahedronGeometry(1, 1);
-  const position: number[] = [...(stem.getAttribute("position").array as Float32Array)];
-  const normal: number[] = [...(stem.getAttribute("normal").array as Float32Array)];
-  const colour: number[] = position.map((_, k) => [0.11, 0.08, 0.055][k % 3]);
-  const at = crown.getAttribute("position").array as Float32Array;
-  for (let k = 0; k < at.length; k += 3) {
-    const [x, y, z] = [at[k], at[k + 1], at[k + 2]];
-    const bump = 0.86 + 0.28 * scattered(Math.round(40 * x), Math.round(40 * y), Math.round(40 * z));
-    position.push(x * bump, y * bump, 0.62 + 0.38 * z * bump);
-    normal.push(x, y, z);
-    const light = 0.5 + 0.5 * Math.max(0, 0.5 + 0.5 * z);
-    colour.push(0.050 * light, 0.085 * light, 0.028 * light);
-  }
-  const geometry = new BufferGeometry();
-  for (const [name, values] of [["position", position], ["normal", normal], ["color", colour]] as const) geometry.setAttribute(name, new BufferAttribute(new Float32Array(values), 3));
-  return geometry;
-}
+type TreeMesh = InstancedMesh<BufferGeometry, MeshLambertMaterial>;
 
 export class Trees {
-  readonly mesh: InstancedMesh<BufferGeometry, MeshLambertMaterial>;
-  private count = 0;
+  readonly meshes: readonly TreeMesh[];
+  /** What they fill; empty: there are none. */
+  readonly extent = new Box3();
+  private planted: Tree[][] = [[], []];
 
-  constructor(uniforms: Record<string, IUniform>) {
-    this.mesh = new InstancedMesh(shape(), lit(new MeshLambertMaterial({ vertexColors: true }), uniforms, { colour: "diffuseColor.rgb *= 1.0;" }), mostTrees);
-    this.mesh.castShadow = true;
-    this.mesh.frustumCulled = false;
-    this.mesh.visible = false;
-    this.mesh.count = 0;
+  /** conifers: their share. uniforms: of the ground, with its trail. */
+  constructor(uniforms: Record<string, IUniform>, private readonly conifers: number) {
+    this.meshes = [broadleaf(), conifer()].map((shape) => {
+      const mesh = new InstancedMesh(shape, lit(new MeshLambertMaterial({ vertexColors: true }), uniforms, shader), mostTrees);
+      mesh.castShadow = true;
+      mesh.frustumCulled = false;
+      mesh.visible = false;
+      return mesh;
+    });
   }
-  plant(zones: readonly Zone[], relief: Relief): void {
+  /** Trees of the next picture. */
+  get shown(): number {
+    let count = 0;
+    for (const mesh of this.meshes) if (mesh.visible) count += mesh.count;
+    return count;
+  }
+  /** Places on the ground of time 0; `stand` gives their heights. */
+  plant(setup: Planted, relief: Relief): void {
+    // In no order, so that a part of them is spread over all of the forest.
+    const trees = treesOf(setup, relief).map((tree) => ({ tree, at: scattered(tree.number, 13) })).sort((a, b) => a.at - b.at).map(({ tree }) => tree);
+    const isConifer = ({ number }: Tree): boolean => scattered(number, 12) < this.conifers;
+    this.planted = [trees.filter((tree) => !isConifer(tree)), trees.filter(isConifer)];
     const matrix = new Matrix4();
     const turned = new Matrix4();
     const tint = new Color();
-    const trees = treesOf(zones);
-    trees.forEach(({ x, y, height, crown, number }, k) => {
-      matrix.makeScale(crown, crown, height).multiply(turned.makeRotationZ(number));
-      const [lx, ly, lz] = relief.local(x, y, -0.2);
-      this.mesh.setMatrixAt(k, matrix.setPosition(lx, ly, lz));
-      const pale = scattered(number, 11);
-      this.mesh.setColorAt(k, tint.setRGB(0.75 + 0.6 * pale, 0.8 + 0.35 * pale, 0.8));
+    this.planted.forEach((list, which) => list.forEach(({ height, crown, number }, k) => {
+      const wide = which === 1 ? 0.75 * crown : crown;
+      this.meshes[which].setMatrixAt(k, matrix.makeScale(wide, wide, (which === 1 ? 1.1 : 0.85) * height).multiply(turned.makeRotationZ(number)));
+      const [pale, warm] = [scattered(number, 11), scattered(number, 14)];
+      this.meshes[which].setColorAt(k, tint.setRGB((0.6 + 0.75 * pale) * (0.8 + 0.45 * warm), 0.7 + 0.5 * pale, (0.7 + 0.4 * pale) * (1.15 - 0.4 * warm)));
+    }));
+    for (const { instanceColor } of this.meshes) if (instanceColor) instanceColor.needsUpdate = true;
+  }
+  /** Puts the trees on a ground: that of time 0, or one that erosion has lowered. */
+  stand(relief: Relief): void {
+    this.extent.makeEmpty();
+    const at = new Vector3();
+    this.planted.forEach((list, which) => {
+      const { instanceMatrix } = this.meshes[which];
+      list.forEach(({ x, y, height }, k) => {
+        at.set(...relief.local(x, y, -0.2)).toArray(instanceMatrix.array, 16 * k + 12);
+        this.extent.expandByPoint(at);
+        at.z += height;
+        this.extent.expandByPoint(at);
+      });
+      instanceMatrix.needsUpdate = true;
     });
-    this.count = trees.length;
-    this.mesh.instanceMatrix.needsUpdate = true;
-    if (this.mesh.instanceColor) this.mesh.instanceColor.needsUpdate = true;
   }
   /** detail: of slow graphics 1 and 0. */
   show(shown: boolean, detail: number): void {
-    this.mesh.visible = shown && this.count > 0;
-    this.mesh.count = detail > 0 ? this.count : Math.ceil(this.count / 3);
+    for (let which = 0; which < this.meshes.length; ++which) {
+      const { length } = this.planted[which];
+      this.meshes[which].visible = shown && length > 0;
+      this.meshes[which].count = detail > 0 ? length : Math.ceil(length / 3);
+    }
   }
   dispose(): void {
-    this.mesh.geometry.dispose();
-    this.mesh.material.dispose();
-    this.mesh.dispose();
+    for (const mesh of this.meshes) {
+      mesh.geometry.dispose();
+      mesh.material.dispose();
+      mesh.dispose();
+    }
   }
 }
