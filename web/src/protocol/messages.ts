@@ -192,7 +192,7 @@ export interface PlacedGauge {
   in_force: boolean;
 }
 
-/** What people have written at a place; the run does not know of it. */
+/** A text that people have pinned to a place; it does not affect the run. */
 export interface Note {
   id: string;
   /** The text. */

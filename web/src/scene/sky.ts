@@ -5,7 +5,7 @@ import { airHead, type Daylight } from "./natural/daylight";
 /** Towards the sun of the scientific look: from the north-west, as maps are lit, so that relief is not perceived inverted. */
 const mapSun = new Vector3(-0.62, 0.5, 0.72).normalize();
 
-/** Of one map of shadows, whose cells are then a third of a metre wide. */
+/** Largest extent of the map of shadows: its cells are then a third of a metre wide. */
 const widestShadows_m = 600;
 
 const vertex = /* glsl */ `

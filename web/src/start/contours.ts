@@ -39,7 +39,7 @@ export function partOf(grid: Grid, west: number, south: number, east: number, no
   return { west: edge(grid.west, columns[0]), south: edge(grid.south, rows[0]), cell, columns: columns.length, rows: rows.length, values };
 }
 
-/** Of every square with four heights; none passes through cells without data. */
+/** Contour lines of a grid; they end at cells without data. */
 export function contours(grid: Grid, interval_m: number): Contour[] {
   const { columns, rows, values } = grid;
   // By level: from the edge on which a piece begins to the one on which it ends. An edge is 2k to the east of cell k, 2k + 1 to its north.

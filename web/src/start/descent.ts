@@ -7,7 +7,7 @@ export interface Descent {
   points: Point[];
   /** The edge of the data, or the lowest ground that can be reached. */
   end: "edge" | "lowest";
-  /** Of the deepest hollow that it crosses, m; 0: none. */
+  /** Depth of the deepest hollow on the way, m; 0: none. */
   hollow_m: number;
 }
 

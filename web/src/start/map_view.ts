@@ -6,7 +6,7 @@ import type { Point } from "../protocol/messages";
 export interface MapView { x: number; y: number; scale: number }
 export interface Size { width: number; height: number }
 
-/** Of a cell, px, beyond which zooming in shows nothing more. */
+/** Largest size of a cell on the screen, px: zooming in farther shows nothing more. */
 const largest_cell_px = 80;
 
 export const groundAt = (view: MapView, size: Size, [u, v]: Point): Point => [view.x + (u - size.width / 2) / view.scale, view.y - (v - size.height / 2) / view.scale];
@@ -38,5 +38,5 @@ export function roundBelow(most: number): number {
   const power = 10 ** Math.floor(Math.log10(most) + 1e-9);
   return ([5, 2].find((m) => m * power <= most * (1 + 1e-9)) ?? 1) * power;
 }
-/** Of a scale bar, m, that is at most so many pixels long. */
+/** Length of the scale bar, m: at most so many pixels. */
 export const barLength = (view: MapView, most_px: number): number => roundBelow(most_px / view.scale);

@@ -18,7 +18,7 @@ const near_px = 10;
 const finger_px = 22;
 /** A pointer that moves less is held still. */
 const still_px = 4;
-/** Between the heights from which contours are drawn. */
+/** Distance on the screen of the heights from which contours are drawn. */
 const contour_px = 3;
 /** A key press moves the cross so far; with Shift for placing it. */
 const step_px = 16;
@@ -143,7 +143,7 @@ export class ScarMap {
     this.draw();
     if (told) this.onchange();
   }
-  /** Of a closed outline: area, slope, and the way downhill from its lowest place. */
+  /** Area, slope and flow path of a closed outline. */
   private measure(): void {
     const { grid, relief, corners } = this;
     this.downhill = null;

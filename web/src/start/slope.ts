@@ -6,7 +6,7 @@ const light = { east: -0.5, north: 0.5, up: Math.SQRT1_2 };
 
 type Rgb = readonly [number, number, number];
 export interface SlopeClass { from_deg: number; name: string; colour: Rgb }
-/** Most slides begin from 25 degrees on; soil seldom lies steeper than 45. */
+/** Classes of slope in which landslides start: few below 25 degrees; soil is rare above 45. */
 export const slopeClasses: readonly SlopeClass[] = [
   { from_deg: 0, name: "below 25°", colour: [246, 246, 240] },
   { from_deg: 25, name: "25–35°", colour: [250, 219, 92] },
@@ -28,7 +28,7 @@ export function gradient({ columns, rows, cell, values }: Grid, column: number, 
 }
 const degrees = (east: number, north: number): number => (Math.atan(Math.hypot(east, north)) * 180) / Math.PI;
 
-/** Of the cell at a place, degrees; NaN: no data. */
+/** Slope of the cell at a place, degrees; NaN: no data. */
 export function slopeAt(grid: Grid, x: number, y: number): number {
   return degrees(...gradient(grid, Math.floor((x - grid.west) / grid.cell), Math.floor((y - grid.south) / grid.cell)));
 }

@@ -4,11 +4,11 @@ import { distanceToLine, inside } from "../../state/shapes";
 import type { Relief } from "../relief";
 import { scattered } from "./noise";
 
-/** Of one view: beyond it trees are farther apart than the zone has them. */
+/** Largest number of trees in a view; a denser forest is thinned. */
 export const mostTrees = 8000;
 /** Height over stem diameter. */
 const slenderness = 45;
-/** Rise over run, of 55 degrees: on steeper ground soil does not hold a tree. */
+/** Gradient of a slope of 55 degrees: no tree stands on steeper ground. */
 const steepest = Math.tan((55 * Math.PI) / 180);
 /** A crown that a wall or the edge of a release cuts looks wrong; branches may reach over. */
 const clearance = 0.6;
@@ -76,7 +76,7 @@ export function treesOf(setup: Planted, relief: Relief, most = mostTrees): Tree[
   const { west, south } = relief.grid;
   const trees: Tree[] = [];
   forests.forEach((zone, which) => {
-    // Of two forests the later one counts, as in the model.
+    // Where forests overlap the later one counts, as in the model.
     const later = forests.slice(which + 1).map(({ polygons }) => polygons);
     const step = 1 / Math.sqrt(zone.stem_density_pm2 * thinned);
     const height = Math.min(28, Math.max(3, slenderness * zone.stem_diameter_m));
