@@ -9,6 +9,8 @@
 
 namespace talus::twin {
 
+/// Name and place.
+[[nodiscard]] nlohmann::json gauge_place(const terrain::Gauge& gauge);
 /// `gauges` of GET /api/scene.
 [[nodiscard]] nlohmann::json gauge_places(const std::vector<terrain::Gauge>& gauges);
 /// `gauges` of GET /api/scenarios/{s}/series: at most 600 rows.

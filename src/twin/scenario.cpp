@@ -51,12 +51,6 @@ Result<std::filesystem::path> keep_fault(const run::FaultRecord& record, const j
     return kept;
 }
 
-/// Whether the run is the same after an action: it gives a new name and nothing else, or is about a note.
-bool leaves_the_run(const json& action) {
-    if (action["action"] == "put_note" || action["action"] == "remove_note") return true;
-    return action.contains("id") && action.contains("name") && action.size() == 3;
-}
-
 }  // namespace
 
 std::string_view phase_name(run::RunPhase phase) {
@@ -177,7 +171,7 @@ void Scenario::advance() {
 
 void Scenario::Parts::note_change(const json& action, const std::string& by, const std::string& sentence) {
     const std::uint64_t step = run->summary().step;
-    if (step == 0 || leaves_the_run(action)) return;
+    if (step == 0) return;
     const bool undoes = action["action"] == "undo", redoes = action["action"] == "redo";
     const bool reverses = !changes.empty() && changes.back().step == step && (changes.back().undoes ? redoes : undoes);
     if (reverses) {
@@ -286,11 +280,12 @@ Done Scenario::commit(Prepared& prepared) {
     } else {
         p.keep_past(prepared);
     }
+    const Setup before = p.setup();
     p.carry_out(prepared);
     p.next = prepared.next;
     if (name == "undo" || name == "redo") entry.setup = write_setup(p.setup());
     p.entries.push_back(std::move(entry));
-    p.note_change(prepared.action, prepared.by, prepared.done.sentence);
+    if (!move_alike(before, p.setup())) p.note_change(prepared.action, prepared.by, prepared.done.sentence);
     ++p.revision;
     return prepared.done;
 }

@@ -46,14 +46,16 @@ json reading_json(const GaugeRecord& record, const observe::FlowAt& now) {
 
 }  // namespace
 
+json gauge_place(const terrain::Gauge& gauge) {
+    return {{"name", gauge.name},
+            {"x_m", gauge.at.x},
+            {"y_m", gauge.at.y},
+            {"chainage_m", number_or_null<json>(gauge.chainage)}};
+}
+
 json gauge_places(const std::vector<terrain::Gauge>& gauges) {
     json places = json::array();
-    for (const terrain::Gauge& gauge : gauges) {
-        places.push_back({{"name", gauge.name},
-                          {"x_m", gauge.at.x},
-                          {"y_m", gauge.at.y},
-                          {"chainage_m", number_or_null<json>(gauge.chainage)}});
-    }
+    for (const terrain::Gauge& gauge : gauges) places.push_back(gauge_place(gauge));
     return places;
 }
 

@@ -4,9 +4,11 @@
 
 #include "core/number_or_null.hpp"
 #include "terrain/barrier.hpp"
+#include "twin/gauges_json.hpp"
 #include "twin/json_keys.hpp"
 #include "twin/scenario_parts.hpp"
 #include "twin/section_values.hpp"
+#include "twin/setup_file.hpp"
 
 namespace talus::twin {
 namespace {
@@ -110,16 +112,10 @@ json building_json(const BuildingSetup& building) {
 }
 
 json gauge_json(const GaugeSetup& gauge) {
-    return {{"id", gauge.id},
-            {"name", gauge.body->name},
-            {"x_m", gauge.body->at.x},
-            {"y_m", gauge.body->at.y},
-            {"chainage_m", number_or_null<json>(gauge.body->chainage)},
-            {"from_scene", gauge.scene_index >= 0}};
-}
-
-json note_json(const NoteSetup& note) {
-    return {{"id", note.id}, {"name", note.body->name}, {"x_m", note.body->at.x}, {"y_m", note.body->at.y}};
+    json entry = gauge_place(*gauge.body);
+    entry["id"] = gauge.id;
+    entry["from_scene"] = gauge.scene_index >= 0;
+    return entry;
 }
 
 template <class Entry>

@@ -131,11 +131,19 @@ bool same_shape(const std::shared_ptr<const terrain::Inflow>& a, const std::shar
 }
 
 bool same_shape(const std::shared_ptr<const terrain::Gauge>& a, const std::shared_ptr<const terrain::Gauge>& b) {
-    return a == b || a->at == b->at;
+    return a == b || (a->at == b->at && a->name == b->name);
 }
 
 bool begin_alike(const Setup& a, const Setup& b) {
     return same_shapes(a.beds, b.beds) && same_shapes(a.inflows, b.inflows) && same_shapes(a.gauges, b.gauges);
+}
+
+bool move_alike(const Setup& a, const Setup& b) {
+    return same_material(a.material, b.material) && same_shapes(a.releases, b.releases) &&
+           std::equal(a.releases.begin(), a.releases.end(), b.releases.begin(),
+                      [](const ReleaseSetup& p, const ReleaseSetup& q) { return p.triggered == q.triggered; }) &&
+           same_shapes(a.barriers, b.barriers) && same_shapes(a.buildings, b.buildings) &&
+           same_shapes(a.zones, b.zones) && same_shapes(a.beds, b.beds) && same_shapes(a.inflows, b.inflows);
 }
 
 const std::vector<const params::Parameter*>& live_parameters() {

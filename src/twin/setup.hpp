@@ -75,7 +75,7 @@ struct GaugeSetup {
     bool as_in_scene = false;
 };
 
-/// What people have written at a place; the run does not know of it.
+/// A text that people have pinned to a place; it does not affect the run.
 struct Note {
     std::string name;  ///< the text
     PlanPoint at;
@@ -141,6 +141,7 @@ template <class Entry>
 [[nodiscard]] bool same_shape(const std::shared_ptr<const terrain::Inflow>& a,
                               const std::shared_ptr<const terrain::Inflow>& b);
 
+/// The same place and the same name, under which a run has its readings.
 [[nodiscard]] bool same_shape(const std::shared_ptr<const terrain::Gauge>& a,
                               const std::shared_ptr<const terrain::Gauge>& b);
 
@@ -153,6 +154,9 @@ template <class Entry>
 
 /// Whether runs of both would begin with the same beds, inflows and gauges.
 [[nodiscard]] bool begin_alike(const Setup& a, const Setup& b);
+
+/// Whether debris moves in the same way with both: they differ in names, gauges and notes at most.
+[[nodiscard]] bool move_alike(const Setup& a, const Setup& b);
 
 /// The keys of the material section that can change while debris moves, as declared for the scene file.
 [[nodiscard]] const std::vector<const params::Parameter*>& live_parameters();

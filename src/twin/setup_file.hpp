@@ -10,6 +10,9 @@
 /// A setup in a journal: complete, except that entries unchanged from the scene are given by their index only.
 namespace talus::twin {
 
+/// As in a setup file and in GET /api/scenarios/{s}/setup.
+[[nodiscard]] nlohmann::json note_json(const NoteSetup& note);
+
 [[nodiscard]] nlohmann::json write_setup(const Setup& setup);
 
 /// Errors name key and value.

@@ -1,5 +1,5 @@
-#include "core/number_or_null.hpp"
 #include "params/fields.hpp"
+#include "twin/gauges_json.hpp"
 #include "twin/json_keys.hpp"
 #include "twin/section_values.hpp"
 #include "twin/setup_file.hpp"
@@ -74,10 +74,7 @@ json body_json(const terrain::Inflow& inflow) {
 }
 
 json body_json(const terrain::Gauge& gauge) {
-    return {{"name", gauge.name},
-            {"x_m", gauge.at.x},
-            {"y_m", gauge.at.y},
-            {"chainage_m", number_or_null<json>(gauge.chainage)}};
+    return gauge_place(gauge);
 }
 
 /// The id, its index in the scene, and the body of a changed one.
@@ -90,6 +87,10 @@ json entry_json(const Entry& setup) {
 }
 
 }  // namespace
+
+json note_json(const NoteSetup& note) {
+    return {{"id", note.id}, {"name", note.body->name}, {"x_m", note.body->at.x}, {"y_m", note.body->at.y}};
+}
 
 json write_setup(const Setup& setup) {
     json file = {{"material", material_json(setup.material)},
@@ -120,10 +121,7 @@ json write_setup(const Setup& setup) {
     for (const BedSetup& bed : setup.beds) file["beds"].push_back(entry_json(bed));
     for (const InflowSetup& inflow : setup.inflows) file["inflows"].push_back(entry_json(inflow));
     for (const GaugeSetup& gauge : setup.gauges) file["gauges"].push_back(entry_json(gauge));
-    for (const NoteSetup& note : setup.notes) {
-        file["notes"].push_back(
-            {{"id", note.id}, {"name", note.body->name}, {"x_m", note.body->at.x}, {"y_m", note.body->at.y}});
-    }
+    for (const NoteSetup& note : setup.notes) file["notes"].push_back(note_json(note));
     return file;
 }
 

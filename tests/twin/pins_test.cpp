@@ -13,6 +13,10 @@ json note(const char* text, double x = west + 30, double y = south + 30) {
     return {{"action", "put_note"}, {"name", text}, {"x_m", x}, {"y_m", y}};
 }
 
+json gauge(const char* name, double x = west + 60, double y = south + 30) {
+    return {{"action", "put_gauge"}, {"name", name}, {"x_m", x}, {"y_m", y}};
+}
+
 TEST(Notes, are_pinned_changed_removed_and_undone) {
     const auto scenario = open(channel_scene());
     act(*scenario, note("Culvert blocked in 2019"));
@@ -35,7 +39,13 @@ TEST(Notes, change_nothing_of_the_run_and_are_in_its_copy) {
     act(*noted, note("Debris is deep here"));
     run_until(*noted, 2);
     EXPECT_EQ(noted->hash(), plain->hash());
+    act(*noted, {{"action", "undo"}});
+    act(*noted, {{"action", "redo"}});
+    act(*noted, {{"action", "put_release"}, {"id", "release-1"}, {"name", "the scar"}});
+    act(*noted, {{"action", "undo"}});
+    act(*noted, gauge("bridge"));
     EXPECT_EQ(noted->setup_json()["changes"], json::array());
+    act(*noted, {{"action", "undo"}});
     EXPECT_FALSE(noted->setup_json()["pending_restart"]);
     const auto copy = noted->copy();
     ASSERT_TRUE(copy) << copy.error().message;
@@ -77,10 +87,6 @@ TEST(Notes, without_text_or_place_or_beside_the_terrain_are_refused) {
     EXPECT_EQ(scenario->setup_json()["notes"], json::array());
 }
 
-json gauge(const char* name, double x = west + 60, double y = south + 30) {
-    return {{"action", "put_gauge"}, {"name", name}, {"x_m", x}, {"y_m", y}};
-}
-
 std::vector<std::string> names_of_readings(const Scenario& scenario) {
     const json answer = scenario.gauges_json();
     std::vector<std::string> names;
@@ -91,7 +97,10 @@ std::vector<std::string> names_of_readings(const Scenario& scenario) {
 TEST(PlacedGauges, record_from_time_0_and_later_ones_from_the_next_restart) {
     const auto scenario = open(channel_scene());
     act(*scenario, gauge("bridge"));
+    act(*scenario, {{"action", "put_gauge"}, {"id", "gauge-1"}, {"name", "footbridge"}});
+    act(*scenario, {{"action", "put_gauge"}, {"id", "gauge-1"}, {"name", "bridge"}});
     EXPECT_EQ(scenario->setup_json()["gauges"][0]["in_force"], true);
+    EXPECT_EQ(names_of_readings(*scenario), std::vector<std::string>{"bridge"}) << "also a name is that of time 0";
     run_until(*scenario, 0.5);
     act(*scenario, gauge("ford", west + 70));
     EXPECT_EQ(scenario->setup_json()["gauges"][1]["in_force"], false);

@@ -35,7 +35,6 @@ export interface Parameter {
 }
 export interface Observation { name: string; chainage_m: number; quantity: "front_velocity" | "debris_speed"; observed_mps: number; source: string }
 /** chainage_m: null: given as a place. */
-export interface Gauge { name: string; x_m: number; y_m: number; chainage_m: number | null }
 export interface FlowPath { points: Place[]; chainage_m: number[]; corridor_width_m: number; traced: boolean }
 export interface Category { name: string; colour: string }
 export interface IntensityClass extends Category { criterion: string }
@@ -59,7 +58,6 @@ export interface SceneInfo {
   gravity_mps2: number;
   flow_path: FlowPath | null;
   observations: Observation[];
-  gauges: Gauge[];
   /** Whether there is an orthophoto. */
   orthophoto: boolean;
   parameters: Parameter[];
@@ -180,7 +178,7 @@ export interface Inflow extends InflowValues {
 /** A change of a run after its first step. */
 export interface ChangeOnTheWay { time_s: number; by: string; sentence: string }
 /** Where depth and speed are recorded. */
-export interface PlacedGauge {
+export interface Gauge {
   id: string;
   name: string;
   x_m: number;
@@ -214,7 +212,7 @@ export interface Setup {
   zones: Zone[];
   beds: Bed[];
   inflows: Inflow[];
-  gauges: PlacedGauge[];
+  gauges: Gauge[];
   notes: Note[];
   /** Beds, inflows or gauges differ from those at the run's start. */
   pending_restart: boolean;
