@@ -5,9 +5,9 @@ import { assert, inControl, pause, until } from "./harness.mjs";
 export async function testDepthAveraged(run) {
   const server = await run.start();
   // What it says of the model comes after its answer to the click, as from a busy server.
-  const page = await run.open(server.controller, { name: "Eve", scale: 1, late: /"type":\s*"depth_averaged"/ });
+  const page = await run.open(server.controller, { name: "Eve", late: /"type":\s*"depth_averaged"/ });
   await inControl(page);
-  const viewer = await run.open(server.viewer, { name: "Zoe", scale: 1 });
+  const viewer = await run.open(server.viewer, { name: "Zoe" });
   const state = () => server.ask("scenarios/A/state");
   const model = () => server.ask("scenarios/A/depth_averaged");
   const done = () => until(model, (m) => m.state === "done", "the model's result");

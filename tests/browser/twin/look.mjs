@@ -57,7 +57,7 @@ async function testSea(run) {
 
 export async function testLook(run) {
   const own = await run.start(["--set", "solver.end_time_s=8"]);
-  const page = await run.open(own.controller, { name: "Iris", look: "natural", width: 740, height: 500, scale: 1 });
+  const page = await run.open(own.controller, { name: "Iris", look: "natural", width: 740, height: 500 });
   await inControl(page);
   await page.locator("label:has-text('Names') input").uncheck();
   // Beside the scale and the compass, without the bars: all of it is sky and ground.
@@ -146,7 +146,7 @@ export async function testLook(run) {
     const after = await run.changed(page, clip, [plain.hash], "the debris");
     await run.shot(page, "52-debris");
     await bright(after);
-    const late = await run.open(own.viewer, { look: "natural", width: 740, height: 500, scale: 1 });
+    const late = await run.open(own.viewer, { look: "natural", width: 740, height: 500 });
     await late.evaluate(clear);
     await late.locator("label:has-text('Names') input").uncheck();
     const joined = await run.changed(late, clip, [plain.hash], "the trail for another person");
