@@ -169,7 +169,8 @@ void expect_the_landslide(const scene::Scene& scene) {
     EXPECT_EQ(scene.spec.material.rest_density, 2000);
     std::vector<std::string> variants;
     for (const params::VariantSpec& variant : scene.spec.variants) variants.push_back(variant.name);
-    EXPECT_EQ(variants, (std::vector<std::string>{"paper", "ls-dyna", "voellmy", "guidance", "reconstruction"}));
+    EXPECT_EQ(variants,
+              (std::vector<std::string>{"paper", "ls-dyna", "voellmy", "guidance", "reconstruction", "yield-stress"}));
     ASSERT_EQ(scene.spec.observations.size(), 2U);
     EXPECT_EQ(scene.spec.observations[0].chainage, 121);
     EXPECT_EQ(scene.spec.observations[0].debris_speed, 11);
