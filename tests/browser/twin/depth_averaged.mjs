@@ -27,8 +27,8 @@ export async function testDepthAveraged(run) {
     assert.equal((await model()).state, "off");
     assert.equal(await layers(page).locator("optgroup.depth-averaged").evaluate((group) => group.disabled), true);
     await until(() => tick(viewer).isDisabled(), (off) => off, "a viewer cannot switch it on");
-    // No faster than in reality, so that it is still under way when it is paused.
-    await page.selectOption("select[aria-label^=Speed]", "1");
+    // Slower than in reality, so that it is still under way when a busy machine has paused it.
+    await page.selectOption("select[aria-label^=Speed]", "0.25");
     await page.click(".run");
     await until(state, (s) => s.time_s > 5, "debris on its way");
     await pause(page, state);
