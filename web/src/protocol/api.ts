@@ -24,6 +24,11 @@ function refusal(status: number, path: string, text: string): Refused {
   return new Refused(status, `The server answered ${status} to ${path}.`);
 }
 
+/** The connection broke, before the answer or inside it: browsers say both with a TypeError of their own words. */
+function noAnswer(error: unknown): never {
+  throw error instanceof TypeError ? new Refused(0, "The server does not answer.") : error;
+}
+
 export class Api {
   /** Of this page's person, once the WebSocket has said hello. */
   secret: string | null = null;
@@ -36,12 +41,7 @@ export class Api {
     const headers: Record<string, string> = { Authorization: `Bearer ${this.token}` };
     if (body !== undefined) headers["Content-Type"] = "application/json";
     if (method !== "GET" && this.secret !== null) headers["Talus-Person"] = this.secret;
-    let response: Response;
-    try {
-      response = await fetch(`api/${path}`, { method, headers, ...(body === undefined ? {} : { body: JSON.stringify(body) }) });
-    } catch {
-      throw new Refused(0, "The server does not answer.");
-    }
+    const response = await fetch(`api/${path}`, { method, headers, ...(body === undefined ? {} : { body: JSON.stringify(body) }) }).catch(noAnswer);
     if (!response.ok) throw refusal(response.status, path, await response.text().catch(() => ""));
     return response;
   }
@@ -62,10 +62,14 @@ export class Api {
   private async get<T>(path: string, read: (response: Response) => Promise<T>): Promise<T> {
     ++this.reads.begun;
     try {
-      return await read(await this.ask("GET", path));
+      return await read(await this.ask("GET", path)).catch(noAnswer);
     } finally {
       ++this.reads.ended;
     }
+  }
+  /** Asks for a change, and for what the server says came of it. */
+  private async told<T>(method: string, path: string, body?: object): Promise<T> {
+    return (await this.ask(method, path, body)).json().catch(noAnswer) as Promise<T>;
   }
   private readonly json = <T>(path: string): Promise<T> => this.get(path, (response) => response.json() as Promise<T>);
   private readonly binary = (path: string): Promise<ArrayBuffer> => this.get(path, (response) => response.arrayBuffer());
@@ -99,11 +103,11 @@ export class Api {
   exported = (s: ScenarioName, name: string): Promise<Blob> => this.blob(`scenarios/${s}/exports/${name}`);
   journal = (s: ScenarioName): Promise<Blob> => this.blob(`scenarios/${s}/journal`);
 
-  act = async (s: ScenarioName, action: Action): Promise<Done> =>
-    (await (await this.ask("POST", `scenarios/${s}/actions`, action)).json()) as Done;
+  act = (s: ScenarioName, action: Action): Promise<Done> =>
+    this.told("POST", `scenarios/${s}/actions`, action);
   /** Another scenario from time 0, with an action applied to it first. */
-  addScenario = async (of: ScenarioName, action: Action | null): Promise<NewScenario> =>
-    (await (await this.ask("POST", "scenarios", { copy_of: of, ...(action === null ? {} : { action }) })).json()) as NewScenario;
+  addScenario = (of: ScenarioName, action: Action | null): Promise<NewScenario> =>
+    this.told("POST", "scenarios", { copy_of: of, ...(action === null ? {} : { action }) });
   endScenario = async (s: ScenarioName): Promise<void> => void (await this.ask("DELETE", `scenarios/${s}`));
   calibrate = async (parameters: { key: string; low: number; high: number }[], runs: number, searchWith: "depth_averaged" | null): Promise<void> =>
     void (await this.ask("POST", "calibration", { parameters, runs, search_with: searchWith }));
@@ -115,14 +119,14 @@ export class Api {
   /** The open session, or the content of a file of one. */
   saveSession = async (name: string, file?: unknown): Promise<void> => void (await this.ask("POST", "sessions", { name, ...(file === undefined ? {} : { file }) }));
   removeSession = async (id: string): Promise<void> => void (await this.ask("DELETE", `sessions/${id}`));
-  beginDraft = async (): Promise<string> => ((await (await this.ask("POST", "draft", {})).json()) as { created: string }).created;
+  beginDraft = async (): Promise<string> => (await this.told<{ created: string }>("POST", "draft", {})).created;
   uploadToDraft = (id: string, role: DraftRole, file: File, onshare: (share: number) => void): Promise<Draft> =>
     this.upload(`draft/${id}/files/${role}?name=${encodeURIComponent(file.name)}`, file, onshare);
-  removeFromDraft = async (id: string, role: DraftRole): Promise<Draft> => (await (await this.ask("DELETE", `draft/${id}/files/${role}`)).json()) as Draft;
-  mendDraft = async (id: string, mending: MendingOfTerrain): Promise<Draft> => (await (await this.ask("POST", `draft/${id}/mend`, mending)).json()) as Draft;
+  removeFromDraft = (id: string, role: DraftRole): Promise<Draft> => this.told("DELETE", `draft/${id}/files/${role}`);
+  mendDraft = (id: string, mending: MendingOfTerrain): Promise<Draft> => this.told("POST", `draft/${id}/mend`, mending);
   reliefOfDraft = async (id: string): Promise<Grid> => decodeGrid(await this.binary(`draft/${id}/relief`));
   /** Checks it, or makes it a scene. */
-  makeOfDraft = async (id: string, wanted: WantedScene): Promise<Checked> => (await (await this.ask("POST", `draft/${id}/scene`, wanted)).json()) as Checked;
+  makeOfDraft = (id: string, wanted: WantedScene): Promise<Checked> => this.told("POST", `draft/${id}/scene`, wanted);
   discardDraft = async (id: string): Promise<void> => void (await this.ask("DELETE", `draft/${id}`));
   removeScene = async (id: string): Promise<void> => void (await this.ask("DELETE", `scenes/${id}`));
   /** A scene with all its files, as an archive. */
@@ -136,8 +140,8 @@ export class Api {
   removeJob = async (id: string): Promise<void> => void (await this.ask("DELETE", `jobs/${id}`));
   sessionFile = (): Promise<Blob> => this.blob("session/file");
   shared = (): Promise<Share> => this.json("share");
-  share = async (wanted: WantedShare): Promise<Share> => (await (await this.ask("POST", "share", wanted)).json()) as Share;
-  unshare = async (): Promise<Share> => (await (await this.ask("DELETE", "share")).json()) as Share;
+  share = (wanted: WantedShare): Promise<Share> => this.told("POST", "share", wanted);
+  unshare = (): Promise<Share> => this.told("DELETE", "share");
   quit = async (): Promise<void> => void (await this.ask("POST", "quit"));
   control = async (what: "request" | "release" | "grant" | "decline"): Promise<void> =>
     void (await this.ask("POST", "control", { do: what }));
