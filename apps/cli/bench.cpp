@@ -36,7 +36,8 @@ struct BenchArguments {
     int iterations = 4, repeats = 7;
     std::optional<int> steps, warm_up;  ///< absent: depends on the number of particles
     std::string backend = "cpu";
-    std::string json, svg;  ///< files to write; empty: none
+    bool json = false;           ///< for programs, in place of the table
+    std::string json_file, svg;  ///< files to write; empty: none
 };
 
 constexpr const char* bench_help = R"(
@@ -61,7 +62,7 @@ A row of the table is the median of the repeats:
 Examples:
   talus bench --scene slab --particles 20000 --threads 1,2
   talus bench --depth-averaged --threads 1,2
-  talus bench --full --json bench.json      up to a million particles, some minutes and 2 GB of memory
+  talus bench --full --json-file bench.json   up to a million particles, some minutes and 2 GB of memory
 
 Exit codes:
     0  complete
@@ -133,20 +134,20 @@ Outcome measure_all(const Plan& plan, const fs::path& builtin_scene, const Inter
     return outcome;
 }
 
-int bench_grid(const Plan& plan) {
+int bench_grid(const Plan& plan, bool json) {
     std::vector<bench::GridRow> rows;
     for (const int threads : plan.threads) {
         const Result<bench::GridRow> row = bench::measure_grid(threads, plan.task.length.repeats);
         if (!row) return fail(exit_code::fault, row.error().message);
         rows.push_back(*row);
     }
-    return print_result(bench::grid_table_text(rows));
+    return print_result(json ? bench::grid_rows_json(rows) : bench::grid_table_text(rows));
 }
 
 int bench_command(const BenchArguments& arguments) {
     InterruptWatch watch;
-    if (arguments.depth_averaged) return bench_grid(Plan(arguments));
-    for (const std::string& file : {arguments.json, arguments.svg}) {
+    if (arguments.depth_averaged) return bench_grid(Plan(arguments), arguments.json);
+    for (const std::string& file : {arguments.json_file, arguments.svg}) {
         if (Status s = check_output_file(file); !s) return fail(exit_code::bad_input, s.error().message);
     }
     const Plan plan(arguments);
@@ -157,7 +158,7 @@ int bench_command(const BenchArguments& arguments) {
     const Result<fs::path> builtin_scene = reads_files ? scene::unpack_builtin_scene(unpacked.path()) : fs::path();
     if (!builtin_scene) return fail(exit_code::failure, builtin_scene.error().message);
 
-    ProgressReporter progress(progress_style(false, false));
+    ProgressReporter progress(progress_style(false, arguments.json));
     Outcome outcome;
     try {
         outcome = measure_all(plan, *builtin_scene, watch, progress);
@@ -166,10 +167,12 @@ int bench_command(const BenchArguments& arguments) {
     }
     progress.clear();
     if (outcome.code != exit_code::success) return fail(outcome.code, outcome.problem);
-    const int printed = print_result(bench::table_text(outcome.rows));
+    const int printed = print_result(arguments.json ? bench::rows_json(outcome.rows) : bench::table_text(outcome.rows));
     if (watch.stop_requested()) return exit_code::interrupted;
     Status written;
-    if (!arguments.json.empty()) written = products::write_text_file(arguments.json, bench::table_json(outcome.rows));
+    if (!arguments.json_file.empty()) {
+        written = products::write_text_file(arguments.json_file, bench::table_json(outcome.rows));
+    }
     if (written && !arguments.svg.empty())
         written = products::write_text_file(arguments.svg, bench::scaling_svg(outcome.rows));
     return written ? printed : fail(exit_code::failure, written.error().message);
@@ -213,7 +216,9 @@ void add_bench(CLI::App& program, std::vector<Command>& commands) {
     app->add_option("--warm-up", bench->warm_up, "steps before the first repeat; default: 10 to 3, likewise")
         ->type_name("N")
         ->check(CLI::Range(0, 100000));
-    app->add_option("--json", bench->json, "write the rows as a list of objects")->type_name("FILE");
+    app->add_flag("--json", bench->json, "the rows as one JSON object per line on stdout, in place of the tables");
+    app->add_option("--json-file", bench->json_file, "write the rows as a list of objects")->type_name("FILE");
+    add_retired_option(*app, "FILE", "is no option; --json prints JSON lines, and --json-file FILE writes the rows");
     app->add_option("--svg", bench->svg, "draw particle-iterations per second against particles")->type_name("FILE");
     app->footer(bench_help);
     commands.push_back({app, [bench] { return bench_command(*bench); }});

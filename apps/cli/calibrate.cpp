@@ -16,6 +16,7 @@
 #include "layers.hpp"
 #include "products/text_file.hpp"
 #include "scene_input.hpp"
+#include "thread_options.hpp"
 #include "throttled_progress.hpp"
 
 namespace talus::cli {
@@ -34,7 +35,7 @@ struct CalibrateArguments {
     std::vector<std::string> overrides;  ///< "section.key=value"
     std::string layers;                  ///< of --layers; empty: not given
     std::string data;                    ///< value of TALUS_DATA; empty: as in the environment
-    std::optional<int> threads;
+    ThreadOptions threads;
     bool retry_failed = false, quiet = false, json = false;
 };
 
@@ -154,13 +155,15 @@ int calibrate_command(const CalibrateArguments& arguments) {
     }
     const std::string ending = arguments.recover ? "_recovery" : "_calibration";
     const fs::path path =
-        arguments.output.empty() ? fs::path("talus_out") / (input->short_name + ending) : fs::path(arguments.output);
+        arguments.output.empty() ? default_output(input->short_name + ending) : fs::path(arguments.output);
 
     const int cores = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
     calibrate::CalibrationOptions options;
-    const int threads = arguments.threads.value_or(cores);
-    options.runs_at_once = std::min(threads, static_cast<int>(plan->search.at_once));
-    options.threads_per_run = std::max(1, threads / options.runs_at_once);
+    const Result<SharedThreads> shared =
+        share_threads(arguments.threads, cores, static_cast<int>(plan->search.at_once));
+    if (!shared) return fail(exit_code::bad_input, shared.error().message);
+    options.runs_at_once = shared->runs_at_once;
+    options.threads_per_run = shared->threads_per_run;
     options.retry_failed = arguments.retry_failed;
     options.stop_requested = &watch.stop_requested();
     ThrottledProgress reporter(arguments.quiet, arguments.json);
@@ -202,9 +205,7 @@ void add_calibrate(CLI::App& program, std::vector<Command>& commands) {
     add_backend(*app, arguments->overrides);
     add_layers(*app, arguments->layers, false);
     add_data_folder(*app, arguments->data);
-    app->add_option("--threads", arguments->threads, "runs in parallel, one thread each; default: all cores")
-        ->type_name("N")
-        ->check(CLI::Range(1, 512));
+    add_thread_options(*app, arguments->threads, "runs", "all cores");
     app->add_flag("--retry-failed", arguments->retry_failed, "repeat runs that failed in an earlier call");
     CLI::Option* quiet = app->add_flag("--quiet", arguments->quiet, "print only errors");
     app->add_flag("--json", arguments->json, "progress and result as one JSON object per line on stdout")

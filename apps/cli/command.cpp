@@ -35,6 +35,10 @@ int print_result(const std::string& text, int code) {
     return print(text) ? code : fail(exit_code::failure, "cannot write to standard output");
 }
 
+std::filesystem::path default_output(const std::string& name) {
+    return std::filesystem::path("talus_out") / name;
+}
+
 Status check_output_file(const std::string& file) {
     if (file.empty()) return {};
     const std::filesystem::path parent = std::filesystem::absolute(file).parent_path();
@@ -58,6 +62,15 @@ void add_overrides(CLI::App& command, std::vector<std::string>& overrides) {
             [&overrides](const std::string& name) { overrides.insert(overrides.begin(), "variant=" + name); },
             "take the values of the scene's [[variant]] of that name; --set overrides them")
         ->type_name("NAME");
+}
+
+void add_retired_option(CLI::App& command, const std::string& name, const std::string& now) {
+    command.add_option(name)
+        ->expected(0, 1)
+        ->group("")  // hidden
+        ->each([name, now](const std::string& value) {
+            throw CLI::ValidationError(name.starts_with("-") ? name : value, now);
+        });
 }
 
 void add_data_folder(CLI::App& command, std::string& data) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <filesystem>
 #include <functional>
 #include <string>
 #include <vector>
@@ -43,6 +44,9 @@ void add_backend(CLI::App& command, std::vector<std::string>& overrides);
 /// The backend of a name that usable_backend() accepts.
 [[nodiscard]] params::BackendChoice backend_of(const std::string& name);
 
+/// An option, or a name of words without one, of earlier versions: not in --help, and refused with what `now` holds.
+void add_retired_option(CLI::App& command, const std::string& name, const std::string& now);
+
 /// Prints "talus: error: MESSAGE" as exactly one line on stderr and returns `code`.
 int fail(int code, const std::string& message);
 
@@ -54,6 +58,9 @@ void note(const std::string& message);
 bool print(const std::string& text);
 /// Prints a result and returns `code`, or that of a failure if it is lost: a script must be able to tell.
 int print_result(const std::string& text, int code = exit_code::success);
+
+/// Where a result of this name goes if the user names no folder.
+[[nodiscard]] std::filesystem::path default_output(const std::string& name);
 
 /// Checks in advance, as far as possible, that `file` (empty: none) can be written: a long run must not fail on it.
 [[nodiscard]] Status check_output_file(const std::string& file);

@@ -10,7 +10,6 @@
 #include "core/hash.hpp"
 #include "core/number_or_null.hpp"
 #include "core/try.hpp"
-#include "default_parent.hpp"
 #include "exit_code.hpp"
 #include "interrupt.hpp"
 #include "layers.hpp"
@@ -22,6 +21,7 @@
 #include "run/run_scene.hpp"
 #include "run/second_opinion.hpp"
 #include "run/variants.hpp"
+#include "run/verdict.hpp"
 #include "run/words.hpp"
 #include "scene/builtin.hpp"
 #include "scene_input.hpp"
@@ -52,7 +52,6 @@ struct CompareArguments {
 struct Job {
     SceneInput input;         ///< for the particles
     scene::Scene grid_scene;  ///< the same for the depth-averaged model
-    std::unique_ptr<DefaultParent> parent;
     fs::path shown;
     products::OutputFolder output;
 };
@@ -71,13 +70,11 @@ Result<Job> open_job(const CompareArguments& arguments, InterruptWatch& watch) {
         name_unpacked_files(input.scene, input.unpacked->path(), input.name);
         name_unpacked_files(grid_scene, input.unpacked->path(), input.name);
     }
-    std::unique_ptr<DefaultParent> parent;
-    if (arguments.output.empty()) parent = std::make_unique<DefaultParent>();
     const fs::path shown =
-        parent ? fs::path(DefaultParent::name) / (input.short_name + "_compared") : fs::path(arguments.output);
+        arguments.output.empty() ? default_output(input.short_name + "_compared") : fs::path(arguments.output);
     TALUS_ASSIGN(auto output, products::OutputFolder::create(shown, arguments.force));
     watch.remove_at_once(output.path());
-    return Job{std::move(input), std::move(grid_scene), std::move(parent), shown, std::move(output)};
+    return Job{std::move(input), std::move(grid_scene), shown, std::move(output)};
 }
 
 Status write_all(Job& job, const report::BothModels& models, const run::SecondOpinion& opinion,

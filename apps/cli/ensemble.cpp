@@ -22,6 +22,7 @@
 #include "layers.hpp"
 #include "ranks.hpp"
 #include "scene_input.hpp"
+#include "thread_options.hpp"
 #include "throttled_progress.hpp"
 
 namespace talus::cli {
@@ -47,7 +48,7 @@ struct EnsembleArguments {
     std::vector<std::string> overrides;  ///< "section.key=value"
     std::string layers;                  ///< of --layers; empty: not given
     std::string data;                    ///< value of TALUS_DATA; empty: as in the environment
-    std::optional<int> threads;
+    ThreadOptions threads;
     std::string shard;  ///< "i/n"; empty: all runs
     bool retry_failed = false, quiet = false, json = false;
 };
@@ -228,14 +229,16 @@ int write_results(const SceneInput& source, const ensemble::PlannedRuns& runs, c
     return quiet ? exit_code::success : print_result(ensemble_text(result, folder.path()));
 }
 
-/// Sets the number of simultaneous runs. One run on several threads is slower than as many runs on one thread each.
-void share_threads(const EnsembleArguments& arguments, const ensemble::PlannedRuns& runs, int ranks,
-                   ensemble::EnsembleOptions& options) {
+/// Sets the number of simultaneous runs.
+Status set_parallel_runs(const EnsembleArguments& arguments, const ensemble::PlannedRuns& runs, int ranks,
+                         ensemble::EnsembleOptions& options) {
     const int cores = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
-    const int threads = arguments.threads.value_or(ranks > 1 ? 1 : cores);
-    const int share = static_cast<int>(std::max<std::size_t>(1, runs.count() / options.shard_count));
-    options.runs_at_once = std::min(threads, share);
-    options.threads_per_run = std::max(1, threads / options.runs_at_once);
+    const std::size_t share = runs.count() / options.shard_count;
+    TALUS_ASSIGN(const SharedThreads shared,
+                 share_threads(arguments.threads, ranks > 1 ? 1 : cores, static_cast<int>(share)));
+    options.runs_at_once = shared.runs_at_once;
+    options.threads_per_run = shared.threads_per_run;
+    return {};
 }
 
 int ensemble_command(const EnsembleArguments& arguments) {
@@ -257,8 +260,8 @@ int ensemble_command(const EnsembleArguments& arguments) {
     if (!runs) return refuse(runs.error());
     const auto definition = ensemble_definition(*runs, source->source, source->scene, source->name);
 
-    const fs::path path = arguments.output.empty() ? fs::path("talus_out") / (source->short_name + "_ensemble")
-                                                   : fs::path(arguments.output);
+    const fs::path path =
+        arguments.output.empty() ? default_output(source->short_name + "_ensemble") : fs::path(arguments.output);
     const auto fast = fast_part(*source, *runs, path);
     if (!fast) return refuse(fast.error());
     if (*fast && shard->second > 1) {
@@ -287,7 +290,9 @@ int ensemble_command(const EnsembleArguments& arguments) {
         reporter.report([&] { return progress_text(progress); }, [&] { return progress_json(progress); });
     };
     options.on_refused = [&](const std::string& why) { reporter.note(why); };
-    share_threads(arguments, *runs, ranks.count(), options);
+    if (Status s = set_parallel_runs(arguments, *runs, ranks.count(), options); !s) {
+        return fail(exit_code::bad_input, s.error().message);
+    }
 
     const auto outcome = run_both(*runs, source->source, *fast, folders, options, reporter);
     reporter.clear();
@@ -394,9 +399,7 @@ void add_ensemble(CLI::App& program, std::vector<Command>& commands) {
     add_backend(*app, ensemble->overrides);
     add_layers(*app, ensemble->layers, false);
     add_data_folder(*app, ensemble->data);
-    app->add_option("--threads", ensemble->threads, "runs in parallel, one thread each; default: all cores, 1 per rank")
-        ->type_name("N")
-        ->check(CLI::Range(1, 512));
+    add_thread_options(*app, ensemble->threads, "runs", "all cores; 1 per rank");
     app->add_option("--shard", ensemble->shard, "only every n-th run, from the i-th; each shard in its own folder")
         ->type_name("I/N");
     app->add_flag("--retry-failed", ensemble->retry_failed, "repeat runs that failed in an earlier call");

@@ -12,7 +12,6 @@
 
 #include "command.hpp"
 #include "core/try.hpp"
-#include "default_parent.hpp"
 #include "exit_code.hpp"
 #include "interrupt.hpp"
 #include "layers.hpp"
@@ -56,8 +55,7 @@ section [zoom] of a scene is the same, and has the spacing of its particles. Wha
 struct Job {
     SceneInput input;
     VariantPlan plan;
-    std::unique_ptr<DefaultParent> parent;  ///< of the output folder, unless the user named that
-    fs::path shown;                         ///< the output folder as the user wrote it
+    fs::path shown;  ///< the output folder as the user wrote it
     products::OutputFolder output;
 };
 
@@ -108,9 +106,7 @@ Result<Job> open_job(const RunArguments& arguments, ProgressReporter& progress, 
     }
 
     TALUS_TRY(check_zoom_options(arguments, input.scene));
-    std::unique_ptr<DefaultParent> parent;
-    if (arguments.output.empty()) parent = std::make_unique<DefaultParent>();
-    const fs::path shown = parent ? fs::path(DefaultParent::name) / input.short_name : fs::path(arguments.output);
+    const fs::path shown = arguments.output.empty() ? default_output(input.short_name) : fs::path(arguments.output);
     TALUS_ASSIGN(auto output, products::OutputFolder::create(shown, arguments.force));
     watch.remove_at_once(output.path());
 
@@ -124,7 +120,7 @@ Result<Job> open_job(const RunArguments& arguments, ProgressReporter& progress, 
     progress.clear();
     if (settled && arguments.json) (void)print(cost_json(*settled) + "\n");
     if (settled && !arguments.json && !arguments.quiet) (void)std::fputs((cost_text(*settled) + "\n").c_str(), stderr);
-    return Job{std::move(input), std::move(plan), std::move(parent), shown, std::move(output)};
+    return Job{std::move(input), std::move(plan), shown, std::move(output)};
 }
 
 /// Callbacks during the run: progress, Ctrl-C, and the run over time if the scene requests it.

@@ -24,6 +24,7 @@
 #include "products/text_file.hpp"
 #include "progress.hpp"
 #include "run/threads.hpp"
+#include "thread_options.hpp"
 #include "validate/page.hpp"
 #include "validate/suite.hpp"
 
@@ -35,14 +36,14 @@ using validate::Case;
 using validate::CaseResult;
 
 struct ValidateArguments {
-    std::vector<std::string> cases;             ///< names or folders; empty: all cases of the program
-    bool quick = false, list = false;           ///< quick: only the cases marked so
-    bool known = false;                         ///< failures announced in the case files do not fail the command
-    std::string json, results, html, markdown;  ///< files to write; empty: none
-    std::optional<int> threads;
+    std::vector<std::string> cases;                  ///< names or folders; empty: all cases of the program
+    bool quick = false, list = false;                ///< quick: only the cases marked so
+    bool known = false;                              ///< failures announced in the case files do not fail the command
+    std::string json_file, results, html, markdown;  ///< files to write; empty: none
+    ThreadOptions threads;
     std::string backend = "cpu";
-    std::string data;            ///< value of TALUS_DATA; empty: as in the environment
-    bool progress_json = false;  ///< for programs, in place of the table
+    std::string data;   ///< value of TALUS_DATA; empty: as in the environment
+    bool json = false;  ///< for programs, in place of the table
 };
 
 constexpr const char* validate_help = R"(
@@ -63,6 +64,10 @@ Result<fs::path> find_case(const std::string& text, const fs::path& builtin) {
     std::error_code error;
     if (fs::exists(fs::path(text) / "case.toml", error)) return fs::path(text);
     if (text.find('/') == std::string::npos && fs::exists(builtin / text / "case.toml", error)) return builtin / text;
+    if (text.ends_with(".json")) {
+        return Error{
+            fmt::format("{}: is no case; --json prints JSON lines, and --json-file {} writes the table", text, text)};
+    }
     return Error{fmt::format("{}: neither a folder with a case.toml nor a case of the program; nearest: {}", text,
                              params::nearest_word(text, validate::builtin_case_names()))};
 }
@@ -90,8 +95,8 @@ std::string list_text(const std::vector<Case>& cases) {
 }
 
 Status write_outputs(const ValidateArguments& arguments, const std::vector<CaseResult>& results) {
-    if (!arguments.json.empty()) {
-        TALUS_TRY(products::write_text_file(arguments.json, validate::table_json(results)));
+    if (!arguments.json_file.empty()) {
+        TALUS_TRY(products::write_text_file(arguments.json_file, validate::table_json(results)));
     }
     if (!arguments.results.empty() || !arguments.html.empty()) {
         const report::Json data = validate::page_data(results);
@@ -125,18 +130,16 @@ std::string result_json(const std::vector<CaseResult>& results) {
         .dump();
 }
 
-/// The results of the cases that were not interrupted, in order. As many cases at once as there are threads for: most
-/// cases are small, and two of them are sooner done beside each other than one after the other.
+/// The results of the cases that were not interrupted, in order. Most cases are small: two of
+/// them are sooner done beside each other than one after the other.
 std::vector<CaseResult> compute(const std::vector<Case>& cases, const ValidateArguments& arguments,
-                                InterruptWatch& watch) {
-    const int most = arguments.threads ? *arguments.threads : run::Threads().count();
-    const int at_once = std::min(most, static_cast<int>(cases.size()));
+                                const SharedThreads& threads, InterruptWatch& watch) {
     // The long ones first, so that no thread is left with one at the end.
     std::vector<std::size_t> order(cases.size());
     std::iota(order.begin(), order.end(), std::size_t{0});
     std::stable_partition(order.begin(), order.end(), [&](std::size_t i) { return !cases[i].quick; });
 
-    const ProgressStyle style = progress_style(false, arguments.progress_json);
+    const ProgressStyle style = progress_style(false, arguments.json);
     ProgressReporter progress(style);
     const auto begun = std::chrono::steady_clock::now();
     std::size_t done = 0;
@@ -153,7 +156,7 @@ std::vector<CaseResult> compute(const std::vector<Case>& cases, const ValidateAr
             lock.unlock();
             validate::Watch told;
             told.stop_requested = &watch.stop_requested();
-            told.thread_count = std::max(1, most / at_once);
+            told.thread_count = threads.threads_per_run;
             told.backend = backend_of(arguments.backend);
             if (style == ProgressStyle::bar) {
                 told.on_progress = [&](const std::string& what) {
@@ -171,7 +174,7 @@ std::vector<CaseResult> compute(const std::vector<Case>& cases, const ValidateAr
     };
     {
         std::vector<std::jthread> workers;
-        for (int k = 1; k < at_once; ++k) workers.emplace_back(work);
+        for (int k = 1; k < threads.runs_at_once; ++k) workers.emplace_back(work);
         work();
     }
     progress.clear();
@@ -185,7 +188,7 @@ std::vector<CaseResult> compute(const std::vector<Case>& cases, const ValidateAr
 int validate_command(const ValidateArguments& arguments) {
     if (!arguments.data.empty()) set_data_folder(arguments.data);
     InterruptWatch watch;
-    for (const std::string& file : {arguments.json, arguments.results, arguments.html, arguments.markdown}) {
+    for (const std::string& file : {arguments.json_file, arguments.results, arguments.html, arguments.markdown}) {
         if (Status s = check_output_file(file); !s) return fail(exit_code::bad_input, s.error().message);
     }
     const TemporaryFolder unpacked;
@@ -200,10 +203,12 @@ int validate_command(const ValidateArguments& arguments) {
         return print_result(list_text(*cases));
     }
 
-    if (arguments.progress_json) (void)print(progress_json(0, cases->size(), {}) + "\n");
-    const std::vector<CaseResult> results = compute(*cases, arguments, watch);
-    const int printed =
-        print_result(arguments.progress_json ? result_json(results) + "\n" : validate::table_text(results));
+    const Result<SharedThreads> threads =
+        share_threads(arguments.threads, run::Threads().count(), static_cast<int>(cases->size()));
+    if (!threads) return fail(exit_code::bad_input, threads.error().message);
+    if (arguments.json) (void)print(progress_json(0, cases->size(), {}) + "\n");
+    const std::vector<CaseResult> results = compute(*cases, arguments, *threads, watch);
+    const int printed = print_result(arguments.json ? result_json(results) + "\n" : validate::table_text(results));
     if (Status s = write_outputs(arguments, results); !s) return fail(exit_code::failure, s.error().message);
     if (watch.stop_requested()) return exit_code::interrupted;
     const validate::Tally tally = validate::count(results);
@@ -220,7 +225,7 @@ void add_validate(CLI::App& program, std::vector<Command>& commands) {
     app->add_flag("--quick", validate->quick, "only the quick cases: under two minutes on two cores");
     app->add_flag("--list", validate->list, "list the cases instead of computing them");
     app->add_flag("--known", validate->known, "announced failures do not cause exit code 4");
-    app->add_option("--json", validate->json, "write the table as a list of objects")->type_name("FILE");
+    app->add_option("--json-file", validate->json_file, "write the table as a list of objects")->type_name("FILE");
     app->add_option("--results", validate->results, "write all that the page shows, as data (results.json)")
         ->type_name("FILE");
     app->add_option("--html", validate->html, "write a page with the table and a plot for each case")
@@ -228,18 +233,16 @@ void add_validate(CLI::App& program, std::vector<Command>& commands) {
     app->add_option("--markdown", validate->markdown,
                     "write the same as Markdown, with its plots in a folder beside it")
         ->type_name("FILE");
-    app->add_option("--threads", validate->threads,
-                    "number of threads, and of cases computed at once; default: all cores")
-        ->type_name("N")
-        ->check(CLI::Range(1, 512));
+    add_thread_options(*app, validate->threads, "cases", "all cores");
     app->add_option("--backend", validate->backend,
                     "what moves the particles: cpu, cuda (a graphics card), auto, or host (the card's code on the "
                     "processor); default: cpu")
         ->type_name("NAME")
         ->check(usable_backend());
     app->add_option("--data", validate->data, "folder for TALUS_DATA, for cases on real terrain")->type_name("DIR");
-    app->add_flag("--progress-json", validate->progress_json,
+    app->add_flag("--json", validate->json,
                   "progress and counts as one JSON object per line on stdout, in place of the table");
+    add_retired_option(*app, "--progress-json", "is now --json");
     app->footer(validate_help);
     commands.push_back({app, [validate] { return validate_command(*validate); }});
 }

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
 
 #include "bench/measure.hpp"
 #include "core/hash.hpp"
@@ -71,6 +72,23 @@ std::string grid_table_text(const std::vector<GridRow>& rows) {
                             row.cells_per_step, row.updates_per_second / 1e6, row.bytes_per_cell, to_hex(row.hash));
     }
     return text;
+}
+
+std::string grid_rows_json(const std::vector<GridRow>& rows) {
+    std::string lines;
+    for (const GridRow& row : rows) {
+        const nlohmann::ordered_json line = {{"event", "row"},
+                                             {"model", "depth_averaged"},
+                                             {"threads", row.threads},
+                                             {"instruction_set", row.instruction_set},
+                                             {"cells", row.cells},
+                                             {"cells_per_step", row.cells_per_step},
+                                             {"cell_updates_per_second", row.updates_per_second},
+                                             {"bytes_per_cell", row.bytes_per_cell},
+                                             {"hash", to_hex(row.hash)}};
+        lines += line.dump() + "\n";
+    }
+    return lines;
 }
 
 }  // namespace talus::bench

@@ -24,5 +24,7 @@ struct GridRow {
 [[nodiscard]] Result<GridRow> measure_grid(int threads, int repeats);
 
 [[nodiscard]] std::string grid_table_text(const std::vector<GridRow>& rows);
+/// One object per row and line, {"event": "row", ...}.
+[[nodiscard]] std::string grid_rows_json(const std::vector<GridRow>& rows);
 
 }  // namespace talus::bench

@@ -82,6 +82,39 @@ std::string distinct(const std::vector<Row>& rows, const Get& get) {
     return fmt::format("{}", fmt::join(values, ", "));
 }
 
+Json row_json(const Row& row) {
+    Json stages = Json::object();
+    for (std::size_t stage = 0; stage < sim::stage_count; ++stage) {
+        stages[std::string(sim::step_stages[stage].name)] = 1e3 * row.stage_seconds[stage];
+    }
+    return {
+        {"scene", row.scene},
+        {"method", row.method},
+        {"particles", row.particles},
+        {"iterations", row.iterations},
+        {"mean_iterations", row.mean_iterations},
+        {"threads", row.threads},
+        {"backend", row.backend},
+        {"instruction_set", row.instruction_set},
+        {"warm_up_steps", row.warm_up},
+        {"steps", row.steps},
+        {"repeats", row.repeats},
+        {"time_step", row.fixed_time_step ? "fixed" : "adaptive"},
+        {"time_step_s", row.time_step},
+        {"step_ms", 1e3 * row.step_seconds},
+        {"stages_ms", std::move(stages)},
+        {"ns_per_particle_iteration", 1e9 / row.particle_iterations_per_second()},
+        {"particle_iterations_per_second", row.particle_iterations_per_second()},
+        {"steps_per_second", row.steps_per_second()},
+        {"real_time_factor", row.real_time_factor()},
+        {"neighbours_per_particle", row.neighbours},
+        {"bytes_per_particle", row.bytes_per_particle > 0 ? Json(row.bytes_per_particle) : Json()},
+        {"calibration_units_per_second", row.calibration_rate},
+        {"relative_rate", row.relative_rate},
+        {"hash", hash_text(row)},
+    };
+}
+
 }  // namespace
 
 std::string table_text(const std::vector<Row>& rows) {
@@ -98,39 +131,18 @@ std::string table_text(const std::vector<Row>& rows) {
 
 std::string table_json(const std::vector<Row>& rows) {
     Json list = Json::array();
-    for (const Row& row : rows) {
-        Json stages = Json::object();
-        for (std::size_t stage = 0; stage < sim::stage_count; ++stage) {
-            stages[std::string(sim::step_stages[stage].name)] = 1e3 * row.stage_seconds[stage];
-        }
-        list.push_back({
-            {"scene", row.scene},
-            {"method", row.method},
-            {"particles", row.particles},
-            {"iterations", row.iterations},
-            {"mean_iterations", row.mean_iterations},
-            {"threads", row.threads},
-            {"backend", row.backend},
-            {"instruction_set", row.instruction_set},
-            {"warm_up_steps", row.warm_up},
-            {"steps", row.steps},
-            {"repeats", row.repeats},
-            {"time_step", row.fixed_time_step ? "fixed" : "adaptive"},
-            {"time_step_s", row.time_step},
-            {"step_ms", 1e3 * row.step_seconds},
-            {"stages_ms", std::move(stages)},
-            {"ns_per_particle_iteration", 1e9 / row.particle_iterations_per_second()},
-            {"particle_iterations_per_second", row.particle_iterations_per_second()},
-            {"steps_per_second", row.steps_per_second()},
-            {"real_time_factor", row.real_time_factor()},
-            {"neighbours_per_particle", row.neighbours},
-            {"bytes_per_particle", row.bytes_per_particle > 0 ? Json(row.bytes_per_particle) : Json()},
-            {"calibration_units_per_second", row.calibration_rate},
-            {"relative_rate", row.relative_rate},
-            {"hash", hash_text(row)},
-        });
-    }
+    for (const Row& row : rows) list.push_back(row_json(row));
     return list.dump(2) + "\n";
+}
+
+std::string rows_json(const std::vector<Row>& rows) {
+    std::string lines;
+    for (const Row& row : rows) {
+        Json line = {{"event", "row"}};
+        line.update(row_json(row));
+        lines += line.dump() + "\n";
+    }
+    return lines;
 }
 
 std::string row_name(const Row& row) {

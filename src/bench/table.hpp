@@ -13,6 +13,9 @@ namespace talus::bench {
 /// A list of objects, one per row; docs/performance.md says what each key means.
 [[nodiscard]] std::string table_json(const std::vector<Row>& rows);
 
+/// One object per row and line, {"event": "row", ...}.
+[[nodiscard]] std::string rows_json(const std::vector<Row>& rows);
+
 /// "slab 20000 stress, 2 threads": names what a row measured.
 [[nodiscard]] std::string row_name(const Row& row);
 

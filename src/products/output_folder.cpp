@@ -65,6 +65,17 @@ fs::path resolved(const fs::path& path) {
     return result;
 }
 
+/// The folders to make before one can be made in `parent`, from the top.
+std::vector<fs::path> missing_folders(fs::path parent) {
+    std::vector<fs::path> missing;
+    std::error_code failed;
+    for (; !parent.empty() && fs::status(parent, failed).type() == fs::file_type::not_found;
+         parent = parent.parent_path()) {
+        missing.insert(missing.begin(), parent);
+    }
+    return missing;
+}
+
 /// A hidden name beside the final one, so that renaming never crosses file systems.
 fs::path hidden_sibling(const fs::path& path, const char* purpose, int attempt) {
     return path.parent_path() / fmt::format(".{}.{}-{}-{}", path.filename().string(), purpose, getpid(), attempt);
@@ -111,9 +122,15 @@ Result<OutputFolder> OutputFolder::create(const fs::path& final_path, bool force
 
     const fs::path parent = folder.final_.parent_path();
     std::error_code failed;
+    for (fs::path& missing : missing_folders(parent)) {
+        if (!fs::create_directory(missing, failed) && failed) {
+            return Error{fmt::format("{}: cannot be made: {}", missing.string(), failed.message())};
+        }
+        folder.made_above_.push_back(std::move(missing));
+    }
     if (!fs::is_directory(parent, failed)) {
-        return Error{fmt::format("{}: the folder to put it in does not exist: {}", folder.final_.string(),
-                                 failed ? failed.message() : parent.string())};
+        return Error{fmt::format("{}: cannot be made in {}: {}", folder.final_.string(), parent.string(),
+                                 failed ? failed.message() : "that is a file, not a folder")};
     }
     remove_leftovers(folder.final_);
     constexpr int max_attempts = 1000;
@@ -135,6 +152,7 @@ Result<OutputFolder> OutputFolder::create(const fs::path& final_path, bool force
 OutputFolder::OutputFolder(OutputFolder&& other) noexcept
     : temporary_(std::exchange(other.temporary_, {})),
       final_(std::move(other.final_)),
+      made_above_(std::exchange(other.made_above_, {})),
       force_(other.force_),
       lock_(std::exchange(other.lock_, -1)) {}
 
@@ -142,6 +160,8 @@ OutputFolder::~OutputFolder() {
     std::error_code ignored;
     if (!temporary_.empty()) fs::remove_all(temporary_, ignored);
     if (lock_ >= 0) close(lock_);
+    // What another run has put into them meanwhile keeps them.
+    for (auto made = made_above_.rbegin(); made != made_above_.rend(); ++made) fs::remove(*made, ignored);
 }
 
 Status OutputFolder::commit() {
@@ -167,6 +187,7 @@ Status OutputFolder::commit() {
         return failure(failed);
     }
     temporary_.clear();
+    made_above_.clear();
     if (!aside.empty()) {
         fs::remove_all(aside, failed);
         if (failed) {

@@ -16,15 +16,15 @@ namespace talus::products {
 /// incomplete folder never has the final name.
 class OutputFolder {
   public:
-    /// Deletes what earlier runs of this output left behind when they were killed. Errors: not writable, already there
-    /// without `force`, parent missing.
+    /// Makes the folders above it that are missing. Deletes what earlier runs of this output left behind when they were
+    /// killed. Errors: not writable, already there without `force`.
     [[nodiscard]] static Result<OutputFolder> create(const std::filesystem::path& final_path, bool force);
 
     OutputFolder(OutputFolder&& other) noexcept;
     OutputFolder& operator=(OutputFolder&&) = delete;
     OutputFolder(const OutputFolder&) = delete;
     OutputFolder& operator=(const OutputFolder&) = delete;
-    /// Deletes the temporary folder unless committed.
+    /// Deletes the temporary folder unless committed, and of the folders made above it those that are empty.
     ~OutputFolder();
 
     [[nodiscard]] const std::filesystem::path& path() const { return temporary_; }
@@ -35,6 +35,7 @@ class OutputFolder {
   private:
     OutputFolder() = default;
     std::filesystem::path temporary_, final_;
+    std::vector<std::filesystem::path> made_above_;  ///< from the top; empty once committed
     bool force_ = false;
     int lock_ = -1;  ///< held on the temporary folder while it is written; -1: the file system has no locks
 };

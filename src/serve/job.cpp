@@ -177,8 +177,9 @@ std::vector<std::string> arguments_of(const WantedJob& wanted, const std::filesy
         words = {"validate"};
         words.insert(words.end(), wanted.cases.begin(), wanted.cases.end());
         if (wanted.quick) words.emplace_back("--quick");
-        for (const auto& [option, file] :
-             {std::pair{"--html", report_of(wanted.kind)}, {"--results", "results.json"}, {"--json", "table.json"}}) {
+        for (const auto& [option, file] : {std::pair{"--html", report_of(wanted.kind)},
+                                           {"--results", "results.json"},
+                                           {"--json-file", "table.json"}}) {
             words.insert(words.end(), {option, (folder / file).string()});
         }
         words.emplace_back("--known");

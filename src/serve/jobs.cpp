@@ -225,7 +225,7 @@ Result<std::string> Jobs::add(const WantedJob& wanted, const std::optional<Known
 /// Of the command line that reports its progress to this program.
 std::vector<std::string> Jobs::words_of(const Job& job) {
     std::vector<std::string> words = job.arguments;
-    words.emplace_back(job.kind == JobKind::validation ? "--progress-json" : "--json");
+    words.emplace_back("--json");
     return words;
 }
 

@@ -35,7 +35,7 @@ class Bench : public testing::Test {
 TEST_F(Bench, MeasuresEverySceneMethodSizeAndNumberOfThreads) {
     std::vector<std::string> arguments = short_;
     arguments[1] = "600,900";
-    for (const char* more : {"--threads", "1,2", "--json", "b.json"}) arguments.emplace_back(more);
+    for (const char* more : {"--threads", "1,2", "--json-file", "b.json"}) arguments.emplace_back(more);
     const ProgramOutcome outcome = run(arguments);
     EXPECT_EQ(outcome.exit_code, 0) << outcome.error;
     EXPECT_THAT(outcome.out, HasSubstr("share of each stage"));
@@ -53,6 +53,25 @@ TEST_F(Bench, MeasuresEverySceneMethodSizeAndNumberOfThreads) {
     EXPECT_EQ(list.back()["scene"], "sham_tseng");
 }
 
+TEST_F(Bench, PrintsItsRowsAsJsonLines) {
+    std::vector<std::string> arguments = short_;
+    for (const char* more :
+         {"--scene", "slab", "--method", "stress", "--threads", "1,2", "--json", "--json-file", "b.json"}) {
+        arguments.emplace_back(more);
+    }
+    const ProgramOutcome outcome = run(arguments);
+    EXPECT_EQ(outcome.exit_code, 0) << outcome.error;
+    const auto lines = lines_of(outcome.out);
+    const auto list = rows("b.json");
+    ASSERT_EQ(lines.size(), 2U) << outcome.out;
+    for (std::size_t i = 0; i < 2; ++i) {
+        auto line = nlohmann::json::parse(lines[i]);
+        EXPECT_EQ(line["event"], "row");
+        line.erase("event");
+        EXPECT_EQ(line, list[i]);
+    }
+}
+
 TEST_F(Bench, ChoosesAndRepeatsItself) {
     std::vector<std::string> arguments = short_;
     for (const char* more : {"--scene", "column", "--method", "pair", "--iterations", "3", "--backend", "cpu"}) {
@@ -61,7 +80,7 @@ TEST_F(Bench, ChoosesAndRepeatsItself) {
     std::vector<std::string> hashes;
     for (const char* file : {"first.json", "second.json"}) {
         std::vector<std::string> now = arguments;
-        now.insert(now.end(), {"--json", file});
+        now.insert(now.end(), {"--json-file", file});
         EXPECT_EQ(run(now).exit_code, 0);
         const auto list = rows(file);
         ASSERT_EQ(list.size(), 1U);
@@ -78,7 +97,8 @@ TEST_F(Bench, ChoosesAndRepeatsItself) {
 
 TEST_F(Bench, MeasuresTheCodeOfACardOnTheProcessor) {
     std::vector<std::string> arguments = short_;
-    for (const char* more : {"--scene", "slab", "--method", "stress", "--backend", "host", "--json", "host.json"}) {
+    for (const char* more :
+         {"--scene", "slab", "--method", "stress", "--backend", "host", "--json-file", "host.json"}) {
         arguments.emplace_back(more);
     }
     ASSERT_EQ(run(arguments).exit_code, 0);
@@ -102,9 +122,10 @@ TEST_F(Bench, BadInputIsRefusedInOneLineBeforeAnythingRuns) {
         {{"--repeats", "-1"}, {"--repeats", "-1", "1000"}},
         {{"--steps", "0"}, {"--steps", "0"}},
         {{"--full", "--particles", "5000"}, {"--full", "--particles"}},
-        {{"--json", "no/such/folder/b.json"}, {"no/such/folder"}},
-        {{"--json", "."}, {"is a folder"}},
+        {{"--json-file", "no/such/folder/b.json"}, {"no/such/folder"}},
+        {{"--json-file", "."}, {"is a folder"}},
         {{"stray"}, {"stray", "talus bench --help"}},
+        {{"--json", "b.json"}, {"b.json", "--json-file FILE"}},
     };
     for (const auto& [arguments, said] : refused) {
         const ProgramOutcome outcome = run(arguments);
@@ -118,7 +139,7 @@ TEST_F(Bench, BadInputIsRefusedInOneLineBeforeAnythingRuns) {
 
 TEST_F(Bench, AFullDiskLeavesNoPieceOfAFile) {
     std::vector<std::string> arguments = short_;
-    for (const char* more : {"--scene", "slab", "--json", "b.json"}) arguments.emplace_back(more);
+    for (const char* more : {"--scene", "slab", "--json-file", "b.json"}) arguments.emplace_back(more);
     const ProgramOutcome outcome = run(arguments, {.largest_file = 100});
     EXPECT_EQ(outcome.exit_code, 1);
     EXPECT_THAT(outcome.error, HasSubstr("b.json"));
@@ -130,7 +151,7 @@ TEST_F(Bench, AnInterruptShowsWhatWasCompleteAndWritesNothing) {
     options.wait_for = "row 2 of";
     options.while_running = [](int process) { kill(process, SIGINT); };
     const ProgramOutcome outcome = run({"--scene", "slab", "--particles", "600,20000", "--method", "stress", "--steps",
-                                        "10", "--repeats", "50", "--json", "b.json"},
+                                        "10", "--repeats", "50", "--json-file", "b.json"},
                                        options);
     EXPECT_EQ(outcome.exit_code, 130);
     EXPECT_THAT(outcome.out, HasSubstr("slab"));

@@ -40,7 +40,7 @@ class Validate : public testing::Test {
 TEST_F(Validate, PrintsATableAndSucceeds) {
     write_case("slab", 0);
     const ProgramOutcome outcome =
-        run({"slab", "--json", "v.json", "--results", "r.json", "--html", "v.html", "--markdown", "v.md"});
+        run({"slab", "--json-file", "v.json", "--results", "r.json", "--html", "v.html", "--markdown", "v.md"});
     EXPECT_EQ(outcome.exit_code, 0) << outcome.error;
     EXPECT_THAT(outcome.out, HasSubstr("case"));
     EXPECT_THAT(outcome.out, HasSubstr("pass"));
@@ -57,7 +57,7 @@ TEST_F(Validate, PrintsATableAndSucceeds) {
 TEST_F(Validate, AFailingCaseIsShownAndFails) {
     write_case("good", 0);
     write_case("bad", 10);
-    const ProgramOutcome outcome = run({"good", "bad", "--json", "v.json"});
+    const ProgramOutcome outcome = run({"good", "bad", "--json-file", "v.json"});
     EXPECT_EQ(outcome.exit_code, case_failed);
     EXPECT_THAT(outcome.out, HasSubstr("FAIL"));
     const auto list = nlohmann::json::parse(read_text(folder_.path() / "v.json"));
@@ -90,10 +90,13 @@ TEST_F(Validate, BadInputIsRefusedInOneLineBeforeAnythingRuns) {
     const std::vector<std::pair<std::vector<std::string>, std::string>> refused = {
         {{"sliding_slap"}, "sliding_slab"},
         {{"/no/such/folder"}, "/no/such/folder"},
-        {{"slab", "--json", "no/such/folder/v.json"}, "no/such/folder"},
+        {{"slab", "--json-file", "no/such/folder/v.json"}, "no/such/folder"},
         {{"slab", "--html", "."}, "is a folder"},
         {{"slab", "--quick"}, "none of these cases is quick"},
         {{"slab", "--threads", "0"}, "--threads"},
+        {{"slab", "--threads", "2", "--parallel-runs", "3"}, "--parallel-runs = 3: must be from 1 to 2"},
+        {{"slab", "--json", "v.json"}, "--json-file v.json writes the table"},
+        {{"slab", "--progress-json"}, "--progress-json: is now --json"},
     };
     for (const auto& [arguments, says] : refused) {
         const ProgramOutcome outcome = run(arguments);

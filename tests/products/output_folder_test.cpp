@@ -152,8 +152,30 @@ TEST_F(OutputFolders, LinkIsFollowed) {
     EXPECT_TRUE(fs::is_symlink(parent_.path() / "latest"));
 }
 
-TEST_F(OutputFolders, MissingParentAndUnwritablePlace) {
-    EXPECT_THAT(refusal(parent_.path() / "a" / "b", false), HasSubstr("the folder to put it in does not exist"));
+TEST_F(OutputFolders, MissingFoldersAboveItAreMadeAndLeftOnlyWithAResult) {
+    const fs::path deep = parent_.path() / "a" / "b" / "c";
+    {
+        auto folder = OutputFolder::create(deep, false);
+        ASSERT_TRUE(folder.ok()) << folder.error().message;
+    }
+    EXPECT_FALSE(fs::exists(parent_.path() / "a")) << "a run that was given up leaves nothing";
+    {
+        auto first = OutputFolder::create(deep, false);
+        auto second = OutputFolder::create(parent_.path() / "a" / "other", false);
+        ASSERT_TRUE(first.ok() && second.ok());
+        EXPECT_TRUE(second->commit().ok());
+    }
+    EXPECT_FALSE(fs::exists(parent_.path() / "a" / "b"));
+    EXPECT_TRUE(fs::exists(parent_.path() / "a" / "other")) << "the folder of another result stays";
+    auto folder = OutputFolder::create(deep, false);
+    ASSERT_TRUE(folder.ok());
+    EXPECT_TRUE(folder->commit().ok());
+    EXPECT_TRUE(fs::exists(deep));
+}
+
+TEST_F(OutputFolders, UnwritablePlace) {
+    (void)test::write_text(parent_.file("file"), "text");
+    EXPECT_THAT(refusal(parent_.path() / "file" / "out", false), HasSubstr("is a file, not a folder"));
     EXPECT_THAT(refusal("/proc/talus_out", false), StartsWith("/proc/talus_out: cannot be made in /proc: "));
     EXPECT_EQ(refusal("", false), "no output folder given");
 }
