@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <set>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -126,50 +127,40 @@ Result<UnionDescription> read_union(const std::string& name, const Json& written
     return all;
 }
 
-class Names {
-  public:
-    explicit Names(const Protocol& all) : all_(all) {}
-
-    [[nodiscard]] Status check() const {
-        for (const RouteDescription& route : all_.routes) {
-            TALUS_TRY(check(route.answer.type));
-            if (route.body) TALUS_TRY(check(route.body->type));
-            TALUS_TRY(check(route.path_parameters));
-            TALUS_TRY(check(route.query));
+/// The names of all types that are used.
+std::set<std::string> used_names(const Protocol& all) {
+    std::set<std::string> names;
+    const auto add = [&](const std::vector<Field>& fields) {
+        for (const Field& field : fields) add_names(field.type, names);
+    };
+    for (const RouteDescription& route : all.routes) {
+        add_names(route.answer.type, names);
+        if (route.body) add_names(route.body->type, names);
+        add(route.path_parameters);
+        add(route.query);
+    }
+    for (const TypeDescription& type : all.types) {
+        if (type.is) add_names(*type.is, names);
+        if (!type.extends.empty()) names.insert(type.extends);
+        add(type.fields);
+    }
+    for (const UnionDescription& one : all.unions) {
+        for (const Variant& variant : one.variants) {
+            if (!variant.extends.empty()) names.insert(variant.extends);
+            add(variant.fields);
         }
-        for (const TypeDescription& type : all_.types) {
-            if (type.is) TALUS_TRY(check(*type.is));
-            TALUS_TRY(check_name(type.extends));
-            TALUS_TRY(check(type.fields));
-        }
-        for (const UnionDescription& one : all_.unions) {
-            for (const Variant& variant : one.variants) {
-                TALUS_TRY(check_name(variant.extends));
-                TALUS_TRY(check(variant.fields));
-            }
-        }
-        return {};
     }
+    return names;
+}
 
-  private:
-    [[nodiscard]] Status check_name(const std::string& name) const {
-        const bool known = name.empty() || all_.find(name) != nullptr ||
-                           std::any_of(all_.unions.begin(), all_.unions.end(),
-                                       [&](const UnionDescription& one) { return one.name == name; });
-        return known ? Status() : Status(Error{fmt::format("the type {} is not described", name)});
+Status check_names(const Protocol& all) {
+    for (const std::string& name : used_names(all)) {
+        const bool is_union = std::any_of(all.unions.begin(), all.unions.end(),
+                                          [&](const UnionDescription& one) { return one.name == name; });
+        if (!is_union && all.find(name) == nullptr) return Error{fmt::format("the type {} is not described", name)};
     }
-    [[nodiscard]] Status check(const Type& type) const {
-        if (type.kind == Type::Kind::name) return check_name(type.name);
-        for (const Type& part : type.parts) TALUS_TRY(check(part));
-        return check(type.fields);
-    }
-    [[nodiscard]] Status check(const std::vector<Field>& fields) const {
-        for (const Field& field : fields) TALUS_TRY(check(field.type));
-        return {};
-    }
-
-    const Protocol& all_;
-};
+    return {};
+}
 
 std::vector<Field> followed_by(std::vector<Field> fields, const std::vector<Field>& more) {
     fields.insert(fields.end(), more.begin(), more.end());
@@ -236,7 +227,7 @@ Result<Protocol> read_protocol(std::string_view text) {
         TALUS_ASSIGN(UnionDescription read, read_union(name, one));
         all.unions.push_back(std::move(read));
     }
-    TALUS_TRY(Names(all).check());
+    TALUS_TRY(check_names(all));
     return all;
 }
 

@@ -206,6 +206,12 @@ Result<Field> parse_field(std::string_view key, std::string_view text) {
     return field;
 }
 
+void add_names(const Type& type, std::set<std::string>& names) {
+    if (type.kind == Kind::name) names.insert(type.name);
+    for (const Type& part : type.parts) add_names(part, names);
+    for (const Field& field : type.fields) add_names(field.type, names);
+}
+
 std::string typescript_of(const Type& type) {
     switch (type.kind) {
         case Kind::number:

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <optional>
+#include <set>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -58,6 +59,9 @@ struct Field {
 
 /// The two parts of a text at " -- ", the second of which may be absent.
 [[nodiscard]] std::pair<std::string, std::string> split_doc(std::string_view text);
+
+/// Adds the names of the types that it is made of.
+void add_names(const Type& type, std::set<std::string>& names);
 
 /// As TypeScript writes it.
 [[nodiscard]] std::string typescript_of(const Type& type);

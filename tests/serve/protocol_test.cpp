@@ -57,12 +57,6 @@ TEST(Protocol, the_committed_tables_are_those_of_the_description) {
     }
 }
 
-void add_names(const serve::Type& type, std::set<std::string>& names) {
-    if (type.kind == serve::Type::Kind::name) names.insert(type.name);
-    for (const serve::Type& part : type.parts) add_names(part, names);
-    for (const serve::Field& field : type.fields) add_names(field.type, names);
-}
-
 TEST(Protocol, every_type_is_used) {
     const serve::Protocol& all = serve::protocol();
     std::set<std::string> used{"Refusal"};  // the answer to whatever is refused

@@ -103,12 +103,6 @@ std::string declaration_of(const UnionDescription& all) {
     return text + ";\n";
 }
 
-void add_names(const Type& type, std::set<std::string>& names) {
-    if (type.kind == Type::Kind::name) names.insert(type.name);
-    for (const Type& part : type.parts) add_names(part, names);
-    for (const Field& field : type.fields) add_names(field.type, names);
-}
-
 std::string import_of(const std::set<std::string>& names, const std::string& module) {
     if (names.empty()) return "";
     return fmt::format("import type {{ {} }} from \"./{}\";\n", fmt::join(names, ", "), module);
