@@ -156,7 +156,7 @@ void control(Session& session, const Request& request, const Respond& respond) {
         return;
     }
     session.people_changed();
-    respond(json_response(200, {{"done", what}}));
+    respond(json_response(200, {{"done", what}, {"created", nullptr}}));
 }
 
 }  // namespace

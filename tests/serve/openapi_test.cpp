@@ -5,6 +5,7 @@
 
 #include <gmock/gmock.h>
 
+#include "serve/protocol.hpp"
 #include "serve/schema.hpp"
 #include "serve/serve_fixture.hpp"
 #include "support/photo.hpp"
@@ -64,6 +65,17 @@ TEST_F(OpenApi, describes_every_route_and_no_other) {
         if (route.needs == serve::Role::nobody) {
             EXPECT_EQ(document["paths"][route.pattern]["get"]["security"], json::array()) << route.pattern;
         }
+    }
+    const std::vector<serve::Route> routes = server_->routes();
+    for (const serve::RouteDescription& route : serve::protocol().routes) {
+        const auto found = std::find_if(routes.begin(), routes.end(), [&](const auto& one) {
+            return one.method == route.method && one.pattern == route.path;
+        });
+        ASSERT_NE(found, routes.end()) << route.path;
+        EXPECT_EQ(found->needs, serve::role_of(route.who)) << route.path;
+        std::vector<std::string> query;
+        for (const serve::Field& field : route.query) query.push_back(field.key);
+        EXPECT_EQ(found->query, query) << route.path;
     }
     EXPECT_EQ(described, served);
     EXPECT_GE(served.size(), 19U);
@@ -188,6 +200,64 @@ TEST_F(OpenApi, the_depth_averaged_model_answers_as_described) {
         expect_described("GET", route + "/layers/{name}", hand.get(path + rest));
     }
     expect_described("POST", "/api/depth_averaged", hand.post("/api/depth_averaged", {{"on", 2}}));
+}
+
+TEST_F(OpenApi, messages_of_the_websocket_are_as_described) {
+    const json page = {{"$ref", "#/components/schemas/PageMessage"}},
+               server = {{"$ref", "#/components/schemas/ServerMessage"}};
+    const json action = {{"action", "put_note"}, {"name", "Here"}, {"x_m", 824195}, {"y_m", 825100}};
+    EXPECT_EQ(differences(action, {{"$ref", "#/components/schemas/Action"}}, document), std::vector<std::string>());
+    WebSocket who = join(controller);
+    std::set<std::string> seen;
+    std::string secret;
+    const auto expect_until = [&](const std::string& type) {
+        while (seen.count(type) == 0) {
+            const auto message = who.receive();
+            ASSERT_TRUE(message) << type;
+            if (!message->text) continue;
+            const json content = json::parse(message->data);
+            seen.insert(content["type"].get<std::string>());
+            if (content["type"] == "hello") secret = content["you"]["secret"];
+            for (const std::string& line : differences(content, server, document)) {
+                ADD_FAILURE() << content["type"] << ": " << line;
+            }
+        }
+    };
+    for (const char* type : {"hello", "setup", "state", "calibration", "alerts", "people"}) {
+        expect_until(type);
+    }
+    for (const json& message :
+         {view_message(10), json{{"type", "mark"}, {"at", {1, 2, 3}}}, json{{"type", "name"}, {"name", "Eve"}}}) {
+        EXPECT_EQ(differences(message, page, document), std::vector<std::string>());
+        EXPECT_TRUE(who.send(message));
+    }
+    EXPECT_FALSE(differences({{"type", "mark"}, {"at", {1, 2}}}, page, document).empty());
+    EXPECT_FALSE(differences({{"type", "mark"}}, page, document).empty());
+    HttpClient hand = as_controller();
+    EXPECT_EQ(hand.post("/api/scenarios/A/actions", action, secret).status, 200);
+    expect_until("done");
+    EXPECT_EQ(hand.post("/api/scenarios", {{"copy_of", "A"}}, secret).status, 200);
+    expect_until("scenarios");
+    EXPECT_EQ(hand.post("/api/depth_averaged", {{"on", true}}, secret).status, 200);
+    expect_until("depth_averaged");
+}
+
+TEST_F(OpenApi, an_obstacle_removed_during_the_run_is_reported_as_described) {
+    act({{"action", "step"}});
+    const json setup = as_viewer().get("/api/scenarios/A/setup").json();
+    ASSERT_FALSE(setup["buildings"].empty());
+    EXPECT_EQ(act({{"action", "remove_building"}, {"id", setup["buildings"][0]["id"]}}).status, 200);
+    const Answer dam = act({{"action", "put_barrier"},
+                            {"line", {{824185, 825080}, {824185, 825120}}},
+                            {"height_m", 2},
+                            {"thickness_m", 1}});
+    ASSERT_EQ(dam.status, 200) << dam.body;
+    act({{"action", "step"}});
+    EXPECT_EQ(act({{"action", "remove_barrier"}, {"id", dam.json()["created"]}}).status, 200);
+    act({{"action", "step"}});
+    const Answer impacts = as_viewer().get("/api/scenarios/A/impacts");
+    EXPECT_EQ(impacts.json()["removed"].size(), 2U) << impacts.body;
+    expect_described("GET", "/api/scenarios/{s}/impacts", impacts);
 }
 
 TEST_F(OpenApi, wrong_values_are_refused_as_described) {

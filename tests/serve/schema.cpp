@@ -32,6 +32,18 @@ std::vector<std::string> differences(const json& value, const json& schema, cons
         const std::string target = schema["$ref"].get<std::string>().substr(1);
         return differences(value, document.at(json::json_pointer(target)), document, where);
     }
+    if (schema.contains("oneOf")) {
+        // What is wrong by the alternative that comes nearest.
+        std::vector<std::string> least;
+        int fitting = 0;
+        for (const json& alternative : schema["oneOf"]) {
+            std::vector<std::string> here = differences(value, alternative, document, where);
+            fitting += here.empty() ? 1 : 0;
+            if (&alternative == &schema["oneOf"].front() || here.size() < least.size()) least = std::move(here);
+        }
+        if (fitting > 1) return {where + " is of " + std::to_string(fitting) + " kinds at once"};
+        return least;
+    }
     std::vector<std::string> found;
     const auto add = [&](const std::vector<std::string>& more) { found.insert(found.end(), more.begin(), more.end()); };
     if (schema.contains("type") && !has_any_type(value, schema["type"])) {

@@ -1,9 +1,9 @@
 import { describe, expect, it } from "vitest";
-import type { DepthAveragedComparison, DepthAveragedStatus } from "../src/protocol/messages";
+import type { DepthAveragedComparison, DepthAveragedRow, DepthAveragedStatus } from "../src/protocol/messages";
 import { depthAveragedLayer, infoOf, isDepthAveragedLayer, isEnsembleLayer, layerInfo, quantityOf } from "../src/scene/layers";
 import { agreementText, comparedTable, isOn, sourceText, statusText } from "../src/state/depth_averaged";
 
-const row = { key: "front_velocity", name: "Front velocity at 30 m", unit: "m/s", decimals: 1, particles: 8.04, depth_averaged_by_then: null, depth_averaged: 6.96, observed: 7 };
+const row: DepthAveragedRow = { key: "front_velocity", name: "Front velocity at 30 m", unit: "m/s", decimals: 1, particles: 8.04, depth_averaged_by_then: null, depth_averaged: 6.96, observed: 7 };
 const compared: DepthAveragedComparison = { time_s: 12.34, over: false, rows: [row], least_depth_m: 0.1, differs: [],
   area: { both_m2: 70, particles_only_m2: 20, depth_averaged_only_m2: 10, intersection_over_union: 0.7 } };
 const result: NonNullable<DepthAveragedStatus["result"]> = { end_s: 61.2, complete: true, stop_reason: "debris came to rest", verdict: { within_limits: true, text: "Within limits", warnings: [], checks: [] }, wall_time_s: 2.44, processor_time_s: 2.5, grid_cell_m: 2.5, hash: "1", notes: [],

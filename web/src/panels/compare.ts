@@ -3,13 +3,13 @@ import type { ScenarioName } from "../protocol/frame";
 import type { Figure } from "../protocol/messages";
 import { watchAll } from "../state/cell";
 import { comparisonRows, differenceText, untouched, type PointPeaks, type Row, type Side } from "../state/comparison";
-import { changesText, paneText } from "../state/differences";
-import { fixed, tick, unitText } from "../state/format";
-import { standingText } from "../state/standing";
+import { paneText } from "../state/differences";
+import { fixed, unitText } from "../state/format";
 import { pressures } from "../state/pressures";
 import type { Probe, Twin } from "../state/twin";
 import { button, h } from "../ui/dom";
 import { comparisonReport } from "./comparison_report";
+import { shownValue, standing, timeSoFar } from "./comparison_text";
 import { save } from "../ui/save";
 import type { Picture } from "./picture";
 
@@ -19,16 +19,6 @@ const peaksOf = (probe: Probe, i: number, name: ScenarioName): PointPeaks => {
   return { name: `point ${i + 1}`, depth_m: series ? peak(series.depth_m) : null, speed_mps: series ? peak(series.speed_mps) : null,
     pressure_kPa: series ? peak(series.pressure_kPa) : null };
 };
-export const shownValue = (value: number | string | null): string => (typeof value === "string" ? value : tick(value ?? NaN));
-/** "End reached, 30.0 s"; and what was changed on the way. */
-export function standing(twin: Twin, name: ScenarioName): string {
-  const { state, setup } = twin.cells[name];
-  const changes = changesText(setup.value);
-  return `${state.value ? standingText(state.value) : ""}${changes ? `; changed on the way: ${changes}` : ""}`;
-}
-
-/** How far a run has come, which its figures are of. */
-export const timeSoFar = (twin: Twin, name: ScenarioName): string => `${fixed(twin.cells[name].state.value?.time_s, 1)}\u202fs`;
 
 export class ComparePanel {
   readonly element: HTMLElement;

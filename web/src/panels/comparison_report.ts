@@ -6,7 +6,7 @@ import { tick, unitText } from "../state/format";
 import { pressures } from "../state/pressures";
 import { roundStep } from "../scene/colour";
 import type { Twin } from "../state/twin";
-import { shownValue, standing, timeSoFar } from "./compare";
+import { shownValue, standing, timeSoFar } from "./comparison_text";
 
 const escape = (text: string): string => text.replace(/[&<>"]/g, (c) => `&#${c.charCodeAt(0)};`);
 const colours = ["#0b5fa5", "#d1640f"];

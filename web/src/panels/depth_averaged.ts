@@ -1,5 +1,6 @@
 // The depth-averaged model beside the particles: its switch, its maps in the list of layers, and figures of both.
-import { quantityNames, type DepthAveragedComparison, type ShownLayer } from "../protocol/messages";
+import type { ShownLayer } from "../protocol/layers";
+import { quantityNames, type DepthAveragedComparison } from "../protocol/messages";
 import { depthAveragedLayer, infoOf, isDepthAveragedLayer, isEnsembleLayer, layerInfo, quantityOf } from "../scene/layers";
 import { watchAll } from "../state/cell";
 import { agreementText, comparedTable, isOn, statusText } from "../state/depth_averaged";

@@ -1,6 +1,6 @@
 // The numbers of the run that are always visible, and the mass balance.
 import { watchAll } from "../state/cell";
-import { bytes, count, fixed, quantity } from "../state/format";
+import { bytes, count, fixed, percent, quantity } from "../state/format";
 import { endText } from "../state/time_left";
 import type { Twin } from "../state/twin";
 import { h } from "../ui/dom";
@@ -47,7 +47,7 @@ export function runCard(twin: Twin): HTMLElement {
     light.className = `compression ${overcompressed ? "bad" : "good"}`;
     const text = `${overcompressed ? "Debris too compressed" : "Compression within limits"}${live || twin.replay_s.value === null ? "" : ` at ${fixed(twin.replay_s.value, 1)} s`}`;
     if (light.textContent !== text) light.textContent = text;
-    light.title = s ? `Compression: mean ${fixed(100 * s.mean_compression, 2)} %, above 3 % in ${fixed(100 * s.overcompressed_share, 1)} % of the particles; limits 1 % and 1 %` : "";
+    light.title = s ? `Compression: mean ${percent(s.mean_compression, 2)}, above 3 % in ${percent(s.overcompressed_share, 1)} of the particles; limits 1 % and 1 %` : "";
     // Of the run so far: a recording does not keep it.
     const judged = live ? s?.verdict ?? null : null;
     verdict.hidden = judged === null;
@@ -93,8 +93,8 @@ export function balance(twin: Twin): HTMLElement {
     body.replaceChildren(...parts.map(([key, label, colour]) => row(label, `${fixed(s[key], 1)} m³`, colour)), row("All releases", `${fixed(s.volume_released_m3, 1)} m³`),
       ...(s.volume_entrained_m3 > 0 ? [row("Entrained from the bed", `${fixed(s.volume_entrained_m3, 1)} m³`)] : []),
       row("Residual", `${fixed(Math.abs(error) < 0.05 ? 0 : error, 1)} m³`));
-    more.tBodies[0]?.replaceChildren(row("Step", live ? count(s.step) : "–"), row("Compression, mean", `${fixed(100 * s.mean_compression, 2)} %`),
-      row("Particles above 3 %", `${fixed(100 * s.overcompressed_share, 2)} %`), row("Compression, largest", `${fixed(100 * s.max_compression, 2)} %`), row("Recording", `${s.recording.frames} frames, ${bytes(s.recording.bytes)}`),
+    more.tBodies[0]?.replaceChildren(row("Step", live ? count(s.step) : "–"), row("Compression, mean", percent(s.mean_compression, 2)),
+      row("Particles above 3 %", percent(s.overcompressed_share, 2)), row("Compression, largest", percent(s.max_compression, 2)), row("Recording", `${s.recording.frames} frames, ${bytes(s.recording.bytes)}`),
       row("State hash", live ? (s.hash ?? "while paused") : "–"));
   });
   const { scene } = twin;

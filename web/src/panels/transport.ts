@@ -40,7 +40,7 @@ export function transport(twin: Twin, playback: Playback): HTMLElement {
     clock.replaceChildren(`${fixed(at, 2)} s`, whose ? h("small", {}, whose) : "");
     slider.max = String(state.end_time_s);
     if (document.activeElement !== slider || twin.replay_s.value === null) slider.value = String(at);
-    slider.style.setProperty("--recorded", `${(100 * state.recording.last_s) / state.end_time_s}%`);
+    slider.style.setProperty("--recorded", `${(100 * (state.recording.last_s ?? 0)) / state.end_time_s}%`);
     slider.style.setProperty("--shown", `${(100 * at) / state.end_time_s}%`);
     slider.setAttribute("aria-valuetext", `${fixed(at, 2)} s of ${fixed(state.end_time_s, 0)} s${whose && `, scenario${whose}`}${twin.replay_s.value === null ? ", live" : ", from the recording"}`);
     const going = state.status === "running" && twin.replay_s.value === null;

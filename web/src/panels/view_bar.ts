@@ -1,5 +1,6 @@
 // Display options: camera, debris, layers.
-import { layerNames, type ShownLayer } from "../protocol/messages";
+import type { ShownLayer } from "../protocol/layers";
+import { layerNames } from "../protocol/messages";
 import { ensembleLayer, ensembleTitle, infoOf, isEnsembleLayer, layerInfo } from "../scene/layers";
 import type { CameraMode, Viewpoint } from "../scene/rig";
 import type { Stage } from "../scene/stage";

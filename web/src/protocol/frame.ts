@@ -1,8 +1,7 @@
 // Frames of docs/protocol.md.
+import { scenarioNames, type ScenarioName } from "./messages";
 
-/** Those that there can be at one time. */
-export const scenarioNames = ["A", "B", "C", "D", "E", "F"] as const;
-export type ScenarioName = (typeof scenarioNames)[number];
+export { scenarioNames, type ScenarioName };
 
 export const frameFlag = { running: 1, tooCompressed: 2, recorded: 4 } as const;
 

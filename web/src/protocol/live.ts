@@ -1,6 +1,6 @@
 // The WebSocket half of docs/protocol.md: connects, reconnects after a break, decodes frames in order.
 import { decodeFrame, type Frame, type ScenarioName } from "./frame";
-import type { Place, ServerMessage } from "./messages";
+import type { PageMessage, Place, ServerMessage } from "./messages";
 
 export type Connection = "connecting" | "open" | "lost" | "refused";
 export interface View { scenarios: ScenarioName[]; rate_hz: number; particle_cap: number }
@@ -89,7 +89,7 @@ export class Live {
     this.asking = false;
     if (mayReturn) this.start();
   }
-  private send(message: object): void {
+  private send(message: PageMessage): void {
     if (this.socket?.readyState === WebSocket.OPEN) this.socket.send(JSON.stringify(message));
   }
   private take(data: ArrayBuffer): void {

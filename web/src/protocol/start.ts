@@ -1,93 +1,249 @@
-// What the start page and the server tell each other: docs/protocol.md, "The start page".
-import type { Parameter } from "./messages";
+// Made from src/serve/protocol.json: edit that; docs/protocol.md tells how this is made again.
+import type { Journal, Parameter, Point, Role, VariedKey } from "./messages";
 
+/** A scene that can be opened. */
 export interface KnownScene {
   id: string;
   title: string;
   kind: "recent" | "own" | "builtin";
   file: string | null;
   opened_at: string | null;
+  /** Its file is gone. */
   missing: boolean;
 }
+
+/** A session that can be opened. */
 export interface SavedSession { id: string; name: string; title: string; saved_at: string; scenarios: number }
 
-export interface UploadLimits { bytes: number; files: number; cells: number }
+/** A scenario of a session file. */
+export interface SavedScenario {
+  name: string;
+  /** Given by people. */
+  title: string;
+  journal: Journal;
+}
+
+/** The journal of every scenario, all of one scene. Opened, each is replayed, and its hash compared with the saved one. */
+export interface SessionFile { talus_session: 1; name: string; title: string; saved_at: string; scenarios: SavedScenario[] }
+
+/** Body of POST /api/sessions. */
+export interface WantedSession {
+  name: string;
+  /** A session file; absent: the open session. */
+  file?: object;
+}
+
+/** Body of POST /api/open: one of the first three. */
+export interface WantedOpening {
+  /** Id of one. */
+  scene?: string;
+  /** Id of a saved one. */
+  session?: string;
+  /** A finished one of the jobs, shown on its scene. */
+  ensemble?: string;
+  /** In place of the open session, which nobody else may control. */
+  replace?: boolean;
+}
+
+/** What a new scene may have. */
+export interface UploadLimits {
+  /** Of all files together. */
+  bytes: number;
+  /** In an archive. */
+  files: number;
+  /** Of a raster. */
+  cells: number;
+}
+
+/** Of a file; a bundle is a whole scene. */
 export type DraftRole = "terrain" | "release" | "buildings" | "orthophoto" | "bundle";
-export interface MendingOfTerrain { epsg: number | null; metric: boolean; metres_per_unit: number | null; nodata: number | null }
+
+/** A file that was uploaded. */
+export interface DraftFile { name: string; bytes: number; kind: "raster" | "polygons" | "other" }
+
+/** What is known of the terrain as it was uploaded. */
+export interface MendingOfTerrain {
+  /** Code of the reference system that it is in. */
+  epsg: number | null;
+  /** Bring it onto square cells of a metric system. */
+  metric: boolean;
+  /** Of its elevations. */
+  metres_per_unit: number | null;
+  /** The elevation that marks missing data. */
+  nodata: number | null;
+}
+
+/** The terrain of a new scene. */
+export interface DraftTerrain {
+  /** Why it cannot be the terrain of a scene. */
+  problem: string | null;
+  columns: number;
+  rows: number;
+  /** Empty: none is stated. */
+  crs: string;
+  /** What it could be brought to; empty: its place is not known. */
+  metric_crs: string;
+  /** As stated; empty: none. */
+  value_unit: string;
+  /** Metres per unit of its heights, as far as the file says: of its values, else the vertical or else the horizontal unit of its reference system. */
+  height_unit_m: number;
+  /** This and nodata_share: of a terrain without a problem. */
+  cell_m?: number;
+  nodata_share?: number;
+  /** Lowest and highest. */
+  elevation_m?: [number, number] | null;
+  /** As POST /api/draft/{id}/mend said. */
+  mending: MendingOfTerrain;
+}
+
 /** A new scene that is being made. */
 export interface Draft {
-  files: Partial<Record<DraftRole, { name: string; bytes: number; kind: "raster" | "polygons" | "other" }>>;
-  terrain: {
-    problem: string | null;
-    columns: number;
-    rows: number;
-    crs: string;
-    metric_crs: string;
-    value_unit: string;
-    /** Metres per unit of the heights, as far as the file says. */
-    height_unit_m: number;
-    cell_m?: number;
-    nodata_share?: number;
-    elevation_m?: [number, number] | null;
-    mending: MendingOfTerrain;
-  } | null;
+  /** By role. */
+  files: Partial<Record<DraftRole, DraftFile>>;
+  terrain: DraftTerrain | null;
+  /** That may still come. */
   bytes_left: number;
 }
-export interface Checked { summary: string; notes: string[]; created: string | null }
-export interface WantedScene { title: string; thickness_m: number | null; volume_m3: number | null; scar: [number, number][] | null; check?: boolean }
+
+/** What was found in a new scene. */
+export interface Checked {
+  /** As talus scene check prints it. */
+  summary: string;
+  /** What was assumed or changed, what is odd. */
+  notes: string[];
+  /** Id of the scene; null: it was only checked. */
+  created: string | null;
+}
+
+/** Body of POST /api/draft/{id}/scene; thickness or volume, not both. */
+export interface WantedScene {
+  title?: string;
+  thickness_m?: number | null;
+  volume_m3?: number | null;
+  /** Outline of the release, in place of a file, in the reference system of the terrain. */
+  scar?: Point[] | null;
+  /** Only check it. */
+  check?: boolean;
+}
 
 export type JobKind = "ensemble" | "calibration" | "validation";
+
 /** An ensemble, a calibration or a validation in a process of its own. */
 export interface Job {
   id: string;
   kind: JobKind;
   state: "waiting" | "running" | "cancelling" | "done" | "cancelled" | "interrupted" | "failed";
+  /** Of its scene; of a validation which cases. */
   title: string;
+  /** How it ended, where its state does not say all. */
   message: string;
   begun_at: string;
   ended_at: string | null;
   /** Runs, or cases of a validation. */
   done: number;
   failed: number;
+  /** 0: not known yet. */
   count: number;
   wall_remaining_s: number | null;
+  /** The command line that computes the same. */
   command: string;
   folder: string;
+  /** Link to its report, relative to the page. */
   report: string | null;
 }
+
+/** What a job may have at most. */
+export interface JobLimits { runs: number; ensemble_factors: number; calibration_factors: number }
+
 /** What a job of a scene may vary. */
 export interface JobForm {
   title: string;
   parameters: Parameter[];
+  /** None: the scene cannot be calibrated. */
   observations: string[];
-  limits: { runs: number; ensemble_factors: number; calibration_factors: number };
+  limits: JobLimits;
 }
-/** Of one run on all cores. */
-export interface JobEstimate { run_s: number | null; particles: number; memory_bytes: number; cores: number }
-export interface ValidationCase { name: string; title: string; quick: boolean }
-export interface Range { key: string; low: number; high: number }
-export type WantedJob =
-  | { kind: "ensemble"; scene: string; factors: Range[]; runs: number; design: string }
-  | { kind: "calibration"; scene: string; factors: Range[]; runs: number }
-  | { kind: "validation"; quick?: boolean; cases?: string[] };
 
+/** What one run of a scene costs here. */
+export interface JobEstimate {
+  /** Wall time of one run on all cores. */
+  run_s: number | null;
+  particles: number;
+  /** Of one run. */
+  memory_bytes: number;
+  cores: number;
+}
+
+/** A case of the program. */
+export interface ValidationCase { name: string; title: string; quick: boolean }
+
+export interface ValidationCases { cases: ValidationCase[] }
+
+/** A job of many runs. */
+export interface WantedEnsemble {
+  kind: "ensemble";
+  /** Id of a scene. */
+  scene: string;
+  /** What varies. */
+  factors: VariedKey[];
+  runs?: number;
+  design?: "latin_hypercube" | "monte_carlo" | "sobol" | "saltelli" | "morris";
+}
+
+/** A job that fits parameters to the scene's observations. */
+export interface WantedBackAnalysis {
+  kind: "calibration";
+  /** Id of a scene. */
+  scene: string;
+  /** What varies. */
+  factors: VariedKey[];
+  runs?: number;
+}
+
+/** A job that runs validation cases. */
+export interface WantedValidation {
+  kind: "validation";
+  /** The quick cases only. */
+  quick?: boolean;
+  /** These cases; absent: all. */
+  cases?: string[];
+}
+
+/** Body of POST /api/jobs. */
+export type WantedJob = WantedEnsemble | WantedBackAnalysis | WantedValidation;
+
+/** What is being opened. */
+export interface Opening {
+  what: string;
+  /** That is done, 0 to 1. */
+  share: number;
+}
+
+/** What can be opened, what is being opened. folder and the following are for controllers. */
 export interface StartPage {
-  /** False: a server of one scene, which has nothing of the following. */
+  /** True. */
   available: boolean;
   open: { title: string } | null;
-  opening: { what: string; share: number } | null;
+  opening: Opening | null;
+  /** Why the last one could not be opened. */
   error: string | null;
   /** Sessions opened so far: grows when another one has taken the place. */
   count: number;
-  /** About the session that is open. */
+  /** About the session that is open, such as a result that differs from the saved one. */
   notes: string[];
   program: string;
-  role: "viewer" | "controller";
-  // For controllers.
+  role: Role;
+  /** Keeps own scenes and saved sessions. */
   folder?: string;
   uploads?: UploadLimits;
   scenes?: KnownScene[];
   sessions?: SavedSession[];
-  /** Newest first; null: there are none on this server. */
+  /** Ensembles, calibrations and validations started here, newest first; null: there are none on this server. */
   jobs?: Job[] | null;
+}
+
+/** Of a server of one scene. */
+export interface NoStartPage {
+  /** False. */
+  available: boolean;
 }

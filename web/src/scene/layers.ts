@@ -1,7 +1,8 @@
 // The map layers: names, units, colours, and the conversion of a grid to a texture on the ground.
 import { DataTexture, FloatType, LinearFilter, NearestFilter, RGFormat, Vector4 } from "three";
 import type { Grid } from "../protocol/grid";
-import { quantityNames, type Category, type DepthAveragedLayer, type Ensemble, type EnsembleLayer, type EnsembleMap, type LayerName, type Place, type ShownLayer } from "../protocol/messages";
+import type { DepthAveragedLayer, EnsembleLayer, ShownLayer } from "../protocol/layers";
+import { quantityNames, type Category, type Ensemble, type EnsembleMap, type LayerName, type Place } from "../protocol/messages";
 import { fromHex, rampAt, ramps, roundStep, type Ramp, type Rgb } from "./colour";
 import type { Draped } from "./ground";
 

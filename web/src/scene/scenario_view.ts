@@ -141,7 +141,10 @@ export class ScenarioView {
     this.setup = setup;
     const { relief } = this.shared;
     for (const child of [...this.solids.children]) disposeSolid(child as Group);
-    for (const building of setup.buildings) this.solids.add(houseSolid(building, relief, plainHouse));
+    for (const building of setup.buildings) {
+      const { base_m, roof_m } = building;
+      if (base_m !== null && roof_m !== null) this.solids.add(houseSolid({ ...building, base_m, roof_m }, relief, plainHouse));
+    }
     for (const barrier of setup.barriers) this.solids.add(barrierSolid(barrier, relief, barrierColour, this.shared.daylight));
     this.houses.build(setup.buildings, relief);
     this.trees.plant(setup, relief);
@@ -251,7 +254,7 @@ export class ScenarioView {
       if (this.setup) labels.push(...groundLabels(this.setup, relief, this.selected));
       for (const building of this.setup?.buildings ?? []) {
         const ring = building.footprint[0]?.[0] ?? [];
-        if (ring.length === 0) continue;
+        if (ring.length === 0 || building.roof_m === null) continue;
         const x = ring.reduce((sum, p) => sum + p[0], 0) / ring.length;
         const y = ring.reduce((sum, p) => sum + p[1], 0) / ring.length;
         labels.push({ at: [x - relief.origin[0], y - relief.origin[1], building.roof_m - relief.origin[2] + 0.5], text: building.name, kind: "house",

@@ -2,7 +2,8 @@
 import type { Texture } from "three";
 import { scenarioNames, type ScenarioName } from "../protocol/frame";
 import { gridAt, type Grid } from "../protocol/grid";
-import type { DepthAveragedLayer, EnsembleLayer, LayerName, ShownLayer } from "../protocol/messages";
+import type { DepthAveragedLayer, EnsembleLayer, ShownLayer } from "../protocol/layers";
+import type { LayerName } from "../protocol/messages";
 import { Cell, watchAll } from "../state/cell";
 import type { Twin } from "../state/twin";
 import { divergingAt, rampAt, ramps, roundStep } from "./colour";

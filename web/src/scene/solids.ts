@@ -22,7 +22,7 @@ function solid(geometry: BufferGeometry, colour: string, id: string, daylight: D
   return group;
 }
 
-export function houseSolid(building: Building, relief: Relief, colour: string): Group {
+export function houseSolid(building: Building & { base_m: number; roof_m: number }, relief: Relief, colour: string): Group {
   const [ox, oy, oz] = relief.origin;
   const shapes = building.footprint.map((polygon) => {
     const [outer = [], ...holes] = polygon.map((ring) => ring.map(([x, y]) => new Vector2(x - ox, y - oy)));

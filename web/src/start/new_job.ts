@@ -1,6 +1,6 @@
 // A new ensemble, calibration or validation: what it varies, how many runs, and how long that takes.
 import type { Api } from "../protocol/api";
-import type { JobEstimate, JobForm, JobKind, KnownScene, ValidationCase, WantedJob } from "../protocol/start";
+import type { JobEstimate, JobForm, JobKind, KnownScene, ValidationCase, WantedEnsemble, WantedJob } from "../protocol/start";
 import { bytes } from "../state/format";
 import { firstRange, freeAtFirst } from "../state/misfit";
 import { aboutTime } from "../state/time_left";
@@ -162,7 +162,7 @@ export class NewJob {
     const runs = this.runs.valueAsNumber;
     if (!Number.isInteger(runs) || runs < 1 || runs > (this.form?.limits.runs ?? Infinity)) return `The number of runs is a whole number from 1 to ${this.form?.limits.runs ?? ""}.`;
     const common = { scene: this.scene.value, factors, runs };
-    return this.kind === "ensemble" ? { kind: "ensemble", ...common, design: this.design.value } : { kind: "calibration", ...common };
+    return this.kind === "ensemble" ? { kind: "ensemble", ...common, design: this.design.value as NonNullable<WantedEnsemble["design"]> } : { kind: "calibration", ...common };
   }
   private async start(): Promise<void> {
     const wanted = this.wanted();

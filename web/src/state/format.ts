@@ -34,6 +34,10 @@ export function tick(value: number): string {
 export function fixed(value: number | null | undefined, after: number): string {
   return value === null || value === undefined || !Number.isFinite(value) ? nothing : value.toFixed(after).replace("-", "\u2212");
 }
+/** Of a share. */
+export function percent(share: number | null, after: number): string {
+  return share === null ? nothing : `${fixed(100 * share, after)} %`;
+}
 export function bytes(value: number | null): string {
   if (value === null) return nothing;
   for (const [size, unit] of [[1e9, "GB"], [1e6, "MB"], [1e3, "kB"]] as const) {

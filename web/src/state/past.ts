@@ -13,7 +13,7 @@ export function seriesUntil(series: Series | null, time_s: number | null): Serie
   const time = Object.fromEntries(Object.entries(series.time).map(([name, column]) => [name, column.slice(0, rows)]));
   // The front arrives in order of chainage, but a second surge may reach places that the first one missed.
   const { arrival_time_s } = series.front;
-  const there = (column: Column): Column => column.filter((_, k) => (arrival_time_s[k] ?? Infinity) <= until);
+  const there = <T>(column: readonly T[]): T[] => column.filter((_, k) => (arrival_time_s[k] ?? Infinity) <= until);
   const { chainage_m, front_velocity_mps, particle_speed_mps } = series.front;
   const { gauges } = series;
   const passed = kept(gauges.time_s);
@@ -34,7 +34,7 @@ export function stateAt(state: State, series: Series | null, time_s: number | nu
   const times = past?.time["time_s"] ?? [];
   if (time_s === null || past === null || times.length === 0) return state;
   const row = times.length - 1;
-  const number = (column: string, otherwise: number): number => past.time[column]?.[row] ?? otherwise;
+  const number = <T extends number | null>(column: string, otherwise: T): T | number => past.time[column]?.[row] ?? otherwise;
   const { front } = past;
   const newest = front.arrival_time_s.reduce<number>((best, t, k) => ((t ?? -Infinity) > (front.arrival_time_s[best] ?? -Infinity) ? k : best), 0);
   const arrived = front.arrival_time_s[newest] ?? null;

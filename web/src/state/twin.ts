@@ -2,7 +2,8 @@
 import { Api, Refused } from "../protocol/api";
 import { scenarioNames, type Frame, type ScenarioName } from "../protocol/frame";
 import { Live, type Connection } from "../protocol/live";
-import type { Action, Alerts, CalibrationStatus, DepthAveragedStatus, Done, Ensemble, GaugeReading, Impacts, Person, Place, Point, ProbeSeries, SceneInfo, Series, ServerMessage, Session, Setup, ShownLayer, State, You } from "../protocol/messages";
+import type { ShownLayer } from "../protocol/layers";
+import type { Action, Alerts, CalibrationStatus, DepthAveragedStatus, Done, Ensemble, GaugeReading, Impacts, Person, Place, Point, ProbeSeries, SceneInfo, Series, ServerMessage, Session, Setup, State, You } from "../protocol/messages";
 import { usualMoment, type Moment } from "../scene/natural/sun";
 import type { StartPage } from "../protocol/start";
 import type { Relief } from "../scene/relief";
@@ -51,7 +52,7 @@ export class Twin {
   readonly people = new Cell<Person[]>([]);
   readonly controller = new Cell<string | null>(null);
   readonly request = new Cell<{ id: string; name: string } | null>(null);
-  readonly links = new Cell<NonNullable<Session["links"]>>({});
+  readonly links = new Cell<Partial<Session["links"]>>({});
   readonly scenarios = new Cell<ScenarioName[]>(["A"]);
   /** One, or two side by side, in the order of their names. */
   readonly shown = new Cell<ScenarioName[]>(["A"]);
@@ -298,7 +299,7 @@ export class Twin {
         this.setScenarios(message.session.scenarios);
         this.askForFrames();
         void this.attempt(async () => {
-          this.links.value = (await this.api.session()).links ?? {};
+          this.links.value = (await this.api.session()).links;
           if (this.ensembles.value.length === 0) this.ensembles.value = await this.api.ensembles();
         });
         break;

@@ -141,14 +141,16 @@ export class Houses {
     this.parts.clear();
     const [ox, oy, oz] = relief.origin;
     buildings.forEach((building, number) => {
+      const { base_m, roof_m } = building;
+      if (base_m === null || roof_m === null) return;  // it stands on no known ground
       const from = into.count;
       const roofs: (() => boolean)[] = [];
-      const eaves = building.roof_m - oz;
+      const eaves = roof_m - oz;
       for (const polygon of building.footprint) {
         const rings = polygon.map((ring, k) => ringOf(ring.map(([x, y]): Point => [x - ox, y - oy]), k > 0));
         if (rings.length === 0 || rings[0].length < 3) continue;
-        const base = Math.min(building.base_m, ...rings[0].map(([x, y]) => relief.at(x + ox, y + oy))) - 0.5 - oz;
-        const ground = building.base_m - oz;
+        const base = Math.min(base_m, ...rings[0].map(([x, y]) => relief.at(x + ox, y + oy))) - 0.5 - oz;
+        const ground = base_m - oz;
         for (const ring of rings) {
           ring.forEach((a, k) => {
             const b = ring[(k + 1) % ring.length];

@@ -1,0 +1,18 @@
+#pragma once
+
+#include <string>
+
+#include "core/result.hpp"
+#include "serve/protocol.hpp"
+
+/// What is committed of the description of the messages besides itself: the page's types, and tables for people.
+namespace talus::test {
+
+/// The module web/src/protocol/GROUP.ts.
+[[nodiscard]] std::string protocol_typescript(const serve::Protocol& all, const std::string& group);
+
+/// The page, with what stands between `<!-- protocol.json: WHAT -->` and `<!-- end -->` made again. WHAT is "routes
+/// GROUP", "types GROUP" or "union NAME". Error: there is no such thing, or no end.
+[[nodiscard]] Result<std::string> with_protocol_tables(const serve::Protocol& all, const std::string& page);
+
+}  // namespace talus::test
