@@ -1,8 +1,9 @@
 #!/usr/bin/env bash
-# Installs what building needs, builds the program, and makes a package for Debian and a relocatable archive of it:
-# build/package/talus_<version>_<architecture>.deb and build/package/talus-<version>-Linux.tar.gz
+# Installs what building needs, builds the program, and makes packages for Debian and a relocatable archive in build/package:
+# talus, libtalus<version>, libtalus-dev, python3-talus and talus-doc as .deb, and talus-<version>-Linux.tar.gz
 #   scripts/package.sh          makes them
-#   scripts/package.sh --test   installs the package into a fresh Debian 12 in a temporary folder, as root, and runs what it holds
+#   scripts/package.sh --test   checks the packages with lintian, installs them into a fresh Debian 12 in a temporary folder, as
+#                               root, and runs what they hold
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
@@ -10,14 +11,18 @@ scripts/install_packages.sh build
 cmake --preset release
 cmake --build --preset release --target talus libtalus manuals --parallel "$(nproc)"
 rm -rf build/package
+# Debian wants libraries in a folder of the architecture; the archive, last, leaves the build folder as it was.
 for kind in DEB TGZ; do
+    if [[ $kind == DEB ]]; then libraries=lib/$(g++ -print-multiarch); else libraries=lib; fi
+    cmake --preset release -D CMAKE_INSTALL_LIBDIR="$libraries"
     cpack --config build/release/CPackConfig.cmake -G "$kind" -B build/package
 done
 rm -rf build/package/_CPack_Packages
 ls -l build/package
 [[ ${1:-} == --test ]] || exit 0
 
-package=$(realpath build/package/*.deb)
+if ! command -v lintian >/dev/null; then apt-get install --yes --no-install-recommends lintian; fi
+lintian --fail-on error,warning build/package/*.deb
 archive=$(realpath build/package/*.tar.gz)
 if ! command -v debootstrap >/dev/null; then apt-get install --yes --no-install-recommends debootstrap; fi
 root=$(mktemp --directory)
@@ -54,9 +59,14 @@ check() {
 mkdir "$root/unpacked"
 tar --extract --file "$archive" --directory "$root/unpacked"
 mv "$root"/unpacked/talus-* "$root/opt/moved"
-cp "$package" "$root/talus.deb"
+mkdir "$root/packages"
+for package in build/package/*.deb; do
+    name=$(basename "$package")
+    cp "$package" "$root/packages/${name%%_*}.deb"
+done
+library=$(basename "$root"/packages/libtalus[0-9]*.deb .deb)
 # What the package depends on, without the package.
-inside sh -c 'apt-get install --yes --no-install-recommends --download-only /talus.deb && apt-get install --yes --no-install-recommends $(dpkg --info /talus.deb | sed -n "s/^ Depends: //p" | tr "," "\n" | sed "s/(.*//; s/|.*//")'
+inside sh -c 'apt-get install --yes --no-install-recommends $(dpkg --field /packages/talus.deb Depends | tr "," "\n" | sed "s/(.*//; s/|.*//")'
 check "the archive runs where it was unpacked" /opt/moved/bin/talus --version
 check "the archive runs a scene" /opt/moved/bin/talus run --quiet -o /result_of_archive \
     --set solver.target_particle_count=500 --set solver.end_time_s=5
@@ -68,17 +78,18 @@ simulation = talus.Simulation(settings={"solver.target_particle_count": 500})
 simulation.advance(1)'
 inside apt-get purge --yes python3-numpy >/dev/null
 
-install_inside /talus.deb
+install_inside /packages/talus.deb
 check "talus --version says version, commit, instruction set, backends" sh -c \
     'talus --version | tr "\n" " " | grep -E "^talus [0-9.]+ commit [0-9a-f]+ instruction set [A-Z0-9]+, of .* backends cpu"'
 check "talus -V says the same" sh -c '[ "$(talus -V)" = "$(talus --version)" ]'
 check "talus run" talus run --quiet -o /result --set solver.target_particle_count=1000 --set solver.end_time_s=5
 check "its report" test -s /result/report.html
 check "a scene that was installed" talus scene check /usr/share/talus/scenes/sham_tseng/scene.toml
+check "neither library nor Python package came with it" sh -c '! ls /usr/lib/*/libtalus* /usr/lib/python3/dist-packages/talus 2>/dev/null'
 check "the plugin for QGIS" test -s /usr/share/qgis/python/plugins/talus_processing/icon.svg
 
 # Manual pages, completion, menu entry: in what reads them.
-install_inside man-db bash-completion zsh desktop-file-utils
+install_inside man-db bash-completion zsh desktop-file-utils libfile-mimeinfo-perl
 inside mandb --quiet
 check "man talus" sh -c 'man talus | grep -q "talus run"'
 check "man talus-run" sh -c 'man talus-run | grep -q -e --convergence'
@@ -90,22 +101,35 @@ check "bash completes commands" bash -c '
     $(complete -p talus | sed "s/.* -F \([^ ]*\).*/\1/") talus ense talus
     [[ " ${COMPREPLY[*]} " == *" ensemble"* ]]'
 # zsh completes in a terminal only: one of its own, in which the tab key is pressed.
-check "zsh completes commands" zsh -f -c '
+zsh_completes() {
+    check "zsh completes $1" env BEGUN="$1" ENDED="$2" zsh -f -c '
     zmodload zsh/zpty
     zpty shell "zsh -f -i"
     zpty -w shell "PS1=; autoload -Uz compinit; compinit -u -D; print rea\"\"dy"
     zpty -r -t shell seen "*ready*" || { sleep 2; zpty -r -t shell seen "*ready*"; }
-    zpty -w -n shell "talus ense"$'"'\t'"'
+    zpty -w -n shell "$BEGUN"$'"'\t'"'
     for try in {1..50}; do
         zpty -r -t shell more && seen+=$more
-        [[ $seen == *ense*mble* ]] && exit 0 # the bell rings between them
+        [[ $seen == *${~ENDED}* ]] && exit 0
         sleep 0.1
     done
     print -r -- "$seen"; exit 1'
+}
+zsh_completes "talus ense" "ense*mble" # the bell rings between them
+zsh_completes "talus run --set material.friction_co" "friction_co*efficient="
+zsh_completes "talus run --set solver.model=dep" "model=dep*th_averaged"
 check "the menu entry" desktop-file-validate /usr/share/applications/talus.desktop
+check "a scene is known as one" sh -c '[ "$(mimetype --brief /usr/share/talus/scenes/sham_tseng/scene.toml)" = application/x-talus-scene ]'
 check "its icon" test -s /usr/share/icons/hicolor/scalable/apps/talus.svg
 
+install_inside /packages/talus-doc.deb
+check "what manual pages name" sh -c '
+    zcat /usr/share/man/man1/talus*.gz | tr -d "\\\\" | grep -o "docs/[a-z-]*\.md" | sort -u >/named && test -s /named
+    while read -r page; do test -s "/usr/share/doc/talus/$page" || { echo "$page"; exit 1; }; done </named'
+
 # The library, for a program in C.
+install_inside "/packages/$library.deb" /packages/libtalus-dev.deb
+check "the loader knows the library" sh -c 'ldconfig -p | grep -q libtalus.so'
 install_inside gcc g++ make libc6-dev pkg-config cmake
 mkdir "$root/embed"
 inside cp /usr/share/doc/talus/examples/embed.c /embed/
@@ -121,9 +145,9 @@ check "a program in C with CMake" sh -c 'cd /embed && cmake -S . -B build >/dev/
 check "a program in C with CMake, on the archive" sh -c \
     'cd /embed && cmake -S . -B moved -D CMAKE_PREFIX_PATH=/opt/moved >/dev/null && grep -q "talus_DIR:PATH=/opt/moved" moved/CMakeCache.txt && cmake --build moved >/dev/null && moved/with_cmake'
 check "only talus.h is visible in the library" sh -c \
-    'nm --dynamic --defined-only /usr/lib/libtalus.so >/exported && grep -q " T talus_" /exported && ! grep -v -E " [TA] (talus_|TALUS_)" /exported'
+    'nm --dynamic --defined-only /usr/lib/*/libtalus.so >/exported && grep -q " T talus_" /exported && ! grep -v -E " [TA] (talus_|TALUS_)" /exported'
 
-install_inside python3-numpy
+install_inside /packages/python3-talus.deb
 check "import talus" python3 -c '
 import talus
 simulation = talus.Simulation(settings={"solver.target_particle_count": 500})
@@ -135,9 +159,9 @@ cp -r tests/python "$root/python/tests/"
 inside ln -s /usr/share/doc/talus/examples/notebooks /python/examples/notebooks
 check "the tests of the Python package" python3 -m unittest discover --start-directory /python/tests/python
 
-inside apt-get remove --yes talus
-if inside sh -c 'command -v talus || ls /usr/share/talus /usr/lib/*/libtalus*' 2>/dev/null; then
-    echo "scripts/package.sh: the package leaves files behind when it is removed" >&2
+inside apt-get remove --yes talus talus-doc "$library"
+if inside sh -c 'command -v talus || ls -d /usr/share/talus /usr/lib/*/libtalus* /usr/lib/python3/dist-packages/talus /usr/share/doc/*talus*' 2>/dev/null; then
+    echo "scripts/package.sh: the packages leave files behind when they are removed" >&2
     exit 1
 fi
-echo "the package installs, runs and goes in a fresh Debian 12"
+echo "the packages install, run and go in a fresh Debian 12"

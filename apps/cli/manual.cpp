@@ -4,11 +4,13 @@
 #include <filesystem>
 #include <map>
 #include <memory>
+#include <set>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "command.hpp"
 #include "params/fields.hpp"
@@ -79,7 +81,10 @@ std::string manual_page(const CLI::App& app, const std::string& path) {
     if (const std::string footer = app.get_footer(); !footer.empty()) {
         page += fmt::format(".SH DETAILS\n.nf\n{}\n.fi\n", roff(footer.substr(footer.find_first_not_of('\n'))));
     }
-    return page;
+    return page +
+           ".SH SEE ALSO\nWhat is called docs/ here is the folder share/doc/talus/docs of the installation; on Debian, "
+           "the package "
+           "talus\\-doc has it: /usr/share/doc/talus/docs.\n";
 }
 
 // Tab completion.
@@ -101,6 +106,39 @@ std::string pattern_of(const Places& places) {
     return pattern;
 }
 
+/// Options that take SECTION.KEY=..., as a pattern of a shell: "--set|--vary".
+std::string key_options(const Places& places) {
+    std::set<std::string> names;
+    for (const auto& [place, app] : places) {
+        for (const CLI::Option* option : app->get_options()) {
+            if (option->get_type_name().starts_with("SECTION.KEY=")) names.insert("--" + option->get_lnames().front());
+        }
+    }
+    return fmt::format("{}", fmt::join(names, "|"));
+}
+
+/// Calls `visit(name, parameter)` for every key of a scene, "material.viscosity".
+template <class Visit>
+void for_each_key(const Visit& visit) {
+    for (const params::Section& section : params::scene_sections()) {
+        for (const params::Parameter& parameter : section.parameters)
+            visit(section.name + "." + parameter.key, parameter);
+    }
+}
+
+/// The values of keys that have a list of them, as cases of a shell: `    "solver.backend") values="cpu cuda" ;;`.
+std::string value_cases() {
+    std::string cases;
+    for_each_key([&](const std::string& name, const params::Parameter& parameter) {
+        const bool yes_or_no = parameter.kind == params::ParameterKind::boolean;
+        if (!yes_or_no && parameter.choices.empty()) return;
+        const std::string values =
+            yes_or_no ? std::string("true false") : fmt::format("{}", fmt::join(parameter.choices, " "));
+        cases += fmt::format("        {}) values=\"{}\" ;;\n", name, values);
+    });
+    return cases;
+}
+
 std::string bash_completion(const Places& places) {
     std::string cases;
     for (const auto& [place, app] : places) {
@@ -112,14 +150,43 @@ std::string bash_completion(const Places& places) {
         if (!words.empty()) words.pop_back();
         cases += fmt::format("        \"{}\") words=\"{}\" ;;\n", place, words);
     }
+    std::string keys;
+    for_each_key([&](const std::string& name, const params::Parameter&) { keys += name + "= "; });
+    keys.pop_back();
     return fmt::format(R"(# Tab completion of talus for bash.
+# $1: what is begun of section.key=value. bash splits words at =; what it splits off is not part of the answer.
+_talus_key() {{
+    local raw=${{COMP_WORDS[COMP_CWORD]}} key=${{1%%=*}} values="" before=""
+    compopt +o filenames 2>/dev/null
+    if [[ $1 != *=* ]]; then
+        compopt -o nospace 2>/dev/null
+        COMPREPLY=($(compgen -W "{}" -- "$1"))
+        return
+    fi
+    case "${{key/\[*\]/}}" in
+{}    esac
+    [[ $raw == ?*=* ]] && before=${{raw%=*}}=
+    COMPREPLY=($(compgen -P "$before" -W "$values" -- "${{1#*=}}"))
+}}
 _talus() {{
-    local current=${{COMP_WORDS[COMP_CWORD]}} place="" words="" word
+    local current=${{COMP_WORDS[COMP_CWORD]}} place="" words="" word glued="" before
+    local -a line=("")
     for word in "${{COMP_WORDS[@]:1:COMP_CWORD-1}}"; do
         case "$place/$word" in
         {}) place="$place/$word" ;;
         esac
     done
+    for word in "${{COMP_WORDS[@]:0:COMP_CWORD+1}}"; do
+        if [[ $word == = || $glued ]]; then line[-1]+=$word; else line+=("$word"); fi
+        [[ $word == = ]] && glued=1 || glued=""
+    done
+    before=${{line[-2]}}
+    case "${{line[-1]}}" in
+    {}) before=${{line[-1]%%=*}} line[-1]=${{line[-1]#*=}} ;;
+    esac
+    case "$before" in
+    {}) _talus_key "${{line[-1]}}"; return ;;
+    esac
     case "$place" in
 {}    esac
     COMPREPLY=($(compgen -W "$words" -- "$current"))
@@ -127,7 +194,8 @@ _talus() {{
 }}
 complete -o filenames -F _talus talus
 )",
-                       pattern_of(places), cases);
+                       keys, value_cases(), pattern_of(places), replaced(key_options(places), "|", "=*|") + "=*",
+                       key_options(places), cases);
 }
 
 /// An entry of _describe: 'name:what it is'.
@@ -149,10 +217,27 @@ std::string zsh_completion(const Places& places) {
         }
         cases += fmt::format("(\"{}\") commands=({}) options=({}) ;;\n", place, commands, options);
     }
+    std::string keys;
+    for_each_key([&](const std::string& name, const params::Parameter& parameter) {
+        keys += "    " + described(name, parameter.help) + "\n";
+    });
     return fmt::format(R"(#compdef talus
 # Tab completion of talus for zsh.
-local place="" word
-local -a commands options
+local place="" word values=""
+local -a commands options keys
+if [[ $words[CURRENT-1] == ({}) ]] || compset -P '({})='; then
+    if [[ $PREFIX == *=* ]]; then
+        case "${{${{PREFIX%%=*}}/\[*\]/}}" in
+{}        esac
+        compset -P '*='
+        compadd -- ${{=values}}
+    else
+        keys=(
+{}    )
+        _describe -t keys key keys -S =
+    fi
+    return
+fi
 for word in "${{(@)words[2,CURRENT-1]}}"; do
     case "$place/$word" in
     ({}) place="$place/$word" ;;
@@ -167,7 +252,7 @@ else
     _files
 fi
 )",
-                       pattern_of(places), cases);
+                       key_options(places), key_options(places), value_cases(), keys, pattern_of(places), cases);
 }
 
 /// Every page, as NAME.1.

@@ -146,6 +146,8 @@ class RunCallbacks {
         if (series_ && series_status_) series_status_ = series_->finish(result);
         return series_status_;
     }
+    /// Of the run over time, s; empty: none was written.
+    [[nodiscard]] std::vector<double> frame_times() const { return series_ ? series_->times() : std::vector<double>(); }
 
   private:
     void report(const run::Progress& now) {
@@ -166,8 +168,8 @@ class RunCallbacks {
 };
 
 Status write_report(Job& job, const run::RunResult& result, const std::vector<run::Comparison>& comparisons,
-                    InterruptWatch& watch) {
-    TALUS_TRY(products::write_products(job.input.scene, result, job.output.path(), comparisons));
+                    const std::vector<double>& frame_times, InterruptWatch& watch) {
+    TALUS_TRY(products::write_products(job.input.scene, result, job.output.path(), comparisons, {}, frame_times));
     // Replacing an earlier result takes two renames; a second Ctrl-C must not fall between them.
     const auto lock = watch.hold();
     return job.output.commit();
@@ -199,7 +201,7 @@ int run_command(const RunArguments& arguments) {
          !std::all_of(comparisons.begin(), comparisons.end(), [](const run::Comparison& c) { return c.all_ran(); }));
     progress.say(interrupted ? "interrupted: writing the results so far" : "writing maps, tables and report");
     take_followed_path(job->input.scene, *result);
-    const Status written = write_report(*job, *result, comparisons, watch);  // report
+    const Status written = write_report(*job, *result, comparisons, callbacks.frame_times(), watch);  // report
     progress.clear();
     if (!written) return fail(exit_code::failure, written.error().message);
 

@@ -8,18 +8,18 @@ from qgis.core import (
     QgsProcessingOutputRasterLayer,
     QgsProcessingOutputString,
     QgsProcessingOutputVectorLayer,
+    QgsProcessingParameterBoolean,
     QgsProcessingParameterEnum,
     QgsProcessingParameterFolderDestination,
     QgsProcessingParameterString,
 )
 
-from .program import run_program
 from .scene_input import TalusAlgorithm, lines_of, number
 
 SCENE_HELP = (
     "The scene is a scene file, or is made of layers: a terrain in a projected reference system in metres, polygons of "
-    "the release areas with their thickness or volume, and buildings. Without either it is the one that comes with "
-    "talus. Values that are left empty are those of the scene."
+    "the release areas with their thickness (a number, or an attribute of the areas) or volume, and buildings. Without "
+    "either it is the one that comes with talus. Values that are left empty are those of the scene."
 )
 
 
@@ -27,19 +27,27 @@ class Run(TalusAlgorithm):
     NAME, TITLE = "run", "Run"
     HELP = (
         "Runs a scene and opens maps of peak depth, speed and pressure, arrival time, deposit and intensity, outlines, "
-        "and buildings coloured by intensity. Cancelling keeps the results so far.\n\n" + SCENE_HELP
+        "and buildings coloured by intensity, on the hillshade of the terrain. Cancelling keeps the results so far.\n\n"
+        "Maps over time are groups that are switched off: tick one, and start the Temporal Controller with its full "
+        "range. Time 0 is the beginning of the year 2000.\n\n" + SCENE_HELP
     )
     MODELS = ["", "particles", "depth_averaged"]
-    MAPS = ["peak_depth", "peak_speed", "peak_pressure", "arrival_time", "deposit_depth", "intensity"]
+    MAPS = ["peak_depth", "peak_speed", "peak_pressure", "arrival_time", "deposit_depth", "intensity", "terrain"]
+    OVER_TIME = ["depth", "speed", "pressure"]
 
     def initAlgorithm(self, configuration=None):
         self.add_scene()
         models = ["as the scene says", "particles", "depth-averaged: in seconds, without what happens inside"]
         self.addParameter(QgsProcessingParameterEnum("MODEL", "Model", models, defaultValue=0))
+        self.addParameter(QgsProcessingParameterBoolean("SERIES", "Also maps over time", defaultValue=False))
+        self.add_advanced(number("SERIES_INTERVAL", "Time between maps over time, s (default: 1)"))
         self.add_output("Results")
         for name in self.MAPS:
             title = name.replace("_", " ").capitalize()
             self.addOutput(QgsProcessingOutputRasterLayer(name.upper(), title))
+        for name in self.OVER_TIME:
+            title = name.capitalize() + " over time, a band per moment"
+            self.addOutput(QgsProcessingOutputRasterLayer(name.upper() + "_OVER_TIME", title))
         self.addOutput(QgsProcessingOutputVectorLayer("BUILDING_IMPACT", "Impact on buildings"))
 
     def processAlgorithm(self, parameters, context, feedback):
@@ -48,13 +56,18 @@ class Run(TalusAlgorithm):
         model = self.MODELS[self.parameterAsEnum(parameters, "MODEL", context)]
         if model:
             arguments += ["--model", model]
+        series = self.parameterAsBool(parameters, "SERIES", context)
+        if series:
+            arguments += ["--series", "geotiff"]
         # talus replaces no folder but one of its own results.
-        run_program(["run", *arguments, "--json", "--force", "-o", folder], feedback)
+        self.run_talus(["run", *arguments, "--json", "--force", "-o", folder], feedback)
         if self.parameterAsBool(parameters, "LOAD", context):
             self.definitions = {"": os.path.join(folder, "results.qlr")}
         results = {"OUTPUT": folder, "REPORT": os.path.join(folder, "report.html")}
         for name in self.MAPS:
             results[name.upper()] = os.path.join(folder, name + ".tif")
+        for name in self.OVER_TIME if series else ():
+            results[name.upper() + "_OVER_TIME"] = os.path.join(folder, "series", name + ".tif")
         results["BUILDING_IMPACT"] = os.path.join(folder, "results.gpkg") + "|layername=buildings"
         return results
 
@@ -77,7 +90,7 @@ class SecondOpinion(TalusAlgorithm):
     def processAlgorithm(self, parameters, context, feedback):
         arguments = self.scene_arguments(parameters, context, feedback)
         folder = self.output_folder(parameters, context)
-        run_program(["compare", *arguments, "--json", "--force", "-o", folder], feedback)
+        self.run_talus(["compare", *arguments, "--json", "--force", "-o", folder], feedback)
         if self.parameterAsBool(parameters, "LOAD", context):
             self.definitions = {title: os.path.join(folder, model, "results.qlr") for model, title in self.MODELS.items()}
         results = {"OUTPUT": folder, "REPORT": os.path.join(folder, "report.html")}
@@ -99,7 +112,7 @@ class Check(TalusAlgorithm):
         arguments = self.scene_arguments(parameters, context, feedback)
         if not arguments or arguments[0] == "--set":
             raise QgsProcessingException("give a scene file, or a terrain and release areas")
-        return {"SUMMARY": run_program(["scene", "check", *arguments], feedback)}
+        return {"SUMMARY": self.run_talus(["scene", "check", *arguments], feedback)}
 
 
 class NewScene(TalusAlgorithm):
@@ -133,7 +146,7 @@ class ManyRuns(TalusAlgorithm):
         return arguments + self.option(parameters, "RUNS", context)
 
     def run_many(self, command, arguments, folder, feedback):
-        run_program([command, *arguments, "--json", "-o", folder], feedback)
+        self.run_talus([command, *arguments, "--json", "-o", folder], feedback)
         return {"OUTPUT": folder, "REPORT": os.path.join(folder, "report.html")}
 
 
@@ -145,6 +158,9 @@ class Ensemble(ManyRuns):
         "material.friction_coefficient=0.2:0.5\nrelease.volume_m3=log:300:1200\nmaterial.viscosity=normal:0.1:0.02\n"
         "The same folder resumes where an earlier call stopped.\n\n" + SCENE_HELP
     )
+    THRESHOLDS = {"depth": ("m", [0.1, 0.5, 1]), "speed": ("mps", [5, 10]), "pressure": ("kPa", [15, 30])}
+    UNITS = {"mps": "m/s"}
+    PERCENTILES = {"05": "5th", "50": "50th", "95": "95th"}
     DESIGNS = ["latin_hypercube", "monte_carlo", "sobol", "grid", "saltelli", "morris"]
 
     def initAlgorithm(self, configuration=None):
@@ -154,14 +170,45 @@ class Ensemble(ManyRuns):
         self.addParameter(number("RETURN_PERIOD", "Return period of the event, years: maps hazard zones"))
         self.add_advanced(number("SEED", "Seed of the design", whole=True))
         self.add_output("Results")
+        for name, (_, title) in self.maps().items():
+            self.addOutput(QgsProcessingOutputRasterLayer(name, title))
+        self.addOutput(QgsProcessingOutputVectorLayer("BUILDING_ODDS", "Buildings, probability of a hit"))
+        self.addOutput(QgsProcessingOutputVectorLayer("ZONES", "Hazard zones, polygons"))
+
+    def maps(self):
+        """File and title of every map, by the name of its output."""
+        maps = {}
+        for quantity, (unit, values) in self.THRESHOLDS.items():
+            for value in values:
+                name = f"probability_{quantity}_{value:g}{unit}"
+                title = f"Probability of {quantity} over {value:g} {self.UNITS.get(unit, unit)}"
+                maps[name.replace(".", "_").upper()] = (name, title)
+        for intensity in ("low", "medium", "high"):
+            name = f"probability_intensity_{intensity}"
+            maps[name.upper()] = (name, f"Probability of {intensity} intensity" + ("" if intensity == "high" else " or higher"))
+        for quantity in ("peak_depth", "peak_speed", "peak_pressure", "arrival_time", "deposit_depth"):
+            for level, words in self.PERCENTILES.items():
+                name = f"{quantity}_p{level}"
+                maps[name.upper()] = (name, f"{quantity.replace('_', ' ').capitalize()}, {words} percentile")
+        maps["HAZARD_ZONES"] = ("hazard_zones", "Hazard zones")
+        return maps
 
     def processAlgorithm(self, parameters, context, feedback):
         arguments = self.scene_arguments(parameters, context, feedback) + self.factor_arguments(parameters, context)
         arguments += ["--design", self.DESIGNS[self.parameterAsEnum(parameters, "DESIGN", context)]]
         for name in ("RETURN_PERIOD", "SEED"):
             arguments += self.option(parameters, name, context)
+        for quantity, (unit, values) in self.THRESHOLDS.items():  # those that the outputs name
+            arguments += [f"--{quantity}-{unit}", ",".join(f"{value:g}" for value in values)]
         folder = self.output_folder(parameters, context)
         results = self.run_many("ensemble", arguments, folder, feedback)
+        # Zones need a return period, intensities depend on the guideline, and where no run comes there are no maps.
+        files = {name: file + ".tif" for name, (file, _) in self.maps().items()}
+        files.update({"BUILDING_ODDS": "buildings.gpkg", "ZONES": "hazard_zones.gpkg"})
+        for name, file in files.items():
+            if os.path.exists(os.path.join(folder, file)):
+                layer = f"|layername={file[:-5]}" if file.endswith(".gpkg") else ""
+                results[name] = os.path.join(folder, file) + layer
         if self.parameterAsBool(parameters, "LOAD", context):
             self.definitions = {"": os.path.join(folder, "results.qlr")}
         return results

@@ -6,14 +6,19 @@ import tempfile
 
 from qgis.core import (
     QgsFeatureSink,
+    QgsField,
+    QgsFields,
     QgsLayerDefinition,
+    QgsMapLayerType,
     QgsProcessing,
     QgsProcessingAlgorithm,
     QgsProcessingException,
+    QgsProcessingFeatureSourceDefinition,
     QgsProcessingOutputHtml,
     QgsProcessingParameterBoolean,
     QgsProcessingParameterDefinition,
     QgsProcessingParameterFeatureSource,
+    QgsProcessingParameterField,
     QgsProcessingParameterFile,
     QgsProcessingParameterFolderDestination,
     QgsProcessingParameterNumber,
@@ -22,9 +27,11 @@ from qgis.core import (
     QgsProcessingUtils,
     QgsProviderRegistry,
     QgsVectorFileWriter,
+    QgsWkbTypes,
 )
 
 from .program import run_program
+from .words import in_words_of_dialog
 
 
 def number(name, text, whole=False, least=0.0):
@@ -39,7 +46,20 @@ KEYS = {
     "FRICTION": "material.friction_coefficient",
     "TURBULENT_FRICTION": "material.turbulent_friction_mps2",
     "PARTICLES": "solver.target_particle_count",
+    "SERIES_INTERVAL": "outputs.series_interval_s",
 }
+#: What a scene that is made of layers calls them.
+LAYER_KEYS = {
+    "TERRAIN": ["--dem", "terrain.file"],
+    "RELEASE": ["--release", "release[0].file"],
+    "RELEASE_LAYER": ["--release-layer", "release[0].layer"],
+    "THICKNESS": ["release[0].thickness_m"],
+    "THICKNESS_ATTRIBUTE": ["release[0].thickness_attribute"],
+    "VOLUME": ["release[0].volume_m3"],
+    "BUILDINGS": ["--buildings", "buildings.file"],
+}
+#: The attribute in which talus finds the thickness of release areas.
+THICKNESS_COLUMN = "thickness_m"
 
 
 def lines_of(text):
@@ -50,6 +70,10 @@ class TalusAlgorithm(QgsProcessingAlgorithm):
     """`NAME`, `TITLE` and `HELP` say which it is."""
 
     NAME = TITLE = HELP = ""
+
+    def __init__(self):
+        super().__init__()
+        self.named = {}  # what the program calls something: what the dialog does
 
     def createInstance(self):
         return type(self)()
@@ -71,7 +95,18 @@ class TalusAlgorithm(QgsProcessingAlgorithm):
         polygons = [QgsProcessing.TypeVectorPolygon]
         self.addParameter(QgsProcessingParameterRasterLayer("TERRAIN", "Terrain (elevations, m)", optional=optional))
         self.addParameter(QgsProcessingParameterFeatureSource("RELEASE", "Release areas", polygons, optional=optional))
+        self.add_advanced(
+            QgsProcessingParameterString(
+                "RELEASE_LAYER", "Layer of the release areas, where their file has several", optional=True
+            )
+        )
         self.addParameter(number("THICKNESS", "Thickness of the release, normal to the slope, m"))
+        self.addParameter(
+            QgsProcessingParameterField(
+                "THICKNESS_ATTRIBUTE", "or the attribute of the areas that has it, m", parentLayerParameterName="RELEASE",
+                optional=True,
+            )
+        )  # fmt: skip
         self.addParameter(number("VOLUME", "or its volume, m3"))
         self.addParameter(QgsProcessingParameterFeatureSource("BUILDINGS", "Buildings", polygons, optional=True))
 
@@ -99,17 +134,87 @@ class TalusAlgorithm(QgsProcessingAlgorithm):
         value = self.parameterAsString(parameters, name, context)
         return [OPTIONS.get(name, "--" + name.lower().replace("_", "-")), value] if value else []
 
+    def title_of(self, name):
+        return f'"{self.parameterDefinition(name).description()}"'
+
+    def run_talus(self, arguments, feedback):
+        """Runs the program; what it says is wrong is said in the words of the dialog."""
+        named = dict(self.named)
+        for parameter in self.parameterDefinitions():
+            option = OPTIONS.get(parameter.name(), "--" + parameter.name().lower().replace("_", "-"))
+            named.setdefault(option, self.title_of(parameter.name()))
+        if "--settings" in named:
+            named["--set"] = named["--settings"]
+        try:
+            return run_program(arguments, feedback)
+        except QgsProcessingException as error:
+            raise QgsProcessingException(in_words_of_dialog(str(error), named)) from None
+
+    def one_layer(self, parameters, name, context):
+        """The parameters, of which `name` is one layer of polygons: a file may have several."""
+        given = parameters.get(name)
+        definition = given if isinstance(given, QgsProcessingFeatureSourceDefinition) else None
+        file = definition.source.valueAsString(context.expressionContext())[0] if definition else given
+        layer = self.parameterAsString(parameters, "RELEASE_LAYER", context) if name == "RELEASE" else ""
+        if not isinstance(file, str) or QgsProcessingUtils.mapLayerFromString(file, context, False) or "|" in file:
+            if layer:
+                raise QgsProcessingException(f"{self.title_of('RELEASE_LAYER')}: is for a file; {self.title_of(name)} is a layer")
+            return parameters
+        found = QgsProviderRegistry.instance().querySublayers(file)
+        polygons = {
+            part.name(): part.uri() for part in found
+            if part.type() == QgsMapLayerType.VectorLayer
+            and QgsWkbTypes.geometryType(part.wkbType()) in (QgsWkbTypes.PolygonGeometry, QgsWkbTypes.UnknownGeometry)
+        }  # fmt: skip
+        names = ", ".join(polygons)
+        if layer and layer not in polygons:
+            raise QgsProcessingException(f"{self.title_of('RELEASE_LAYER')}: {file} has no layer of polygons {layer}; it has: {names}")
+        if not layer and len(polygons) > 1:
+            where = f"in {self.title_of('RELEASE_LAYER')}" if name == "RELEASE" else "as FILE|layername=NAME"
+            raise QgsProcessingException(
+                f"{self.title_of(name)}: {file} has {len(polygons)} layers of polygons; name one {where}: {names}"
+            )
+        if not polygons:
+            return parameters  # QGIS says what is wrong with it
+        uri = polygons[layer] if layer else next(iter(polygons.values()))
+        if definition:
+            uri = QgsProcessingFeatureSourceDefinition(uri, definition.selectedFeaturesOnly, definition.featureLimit)
+        return {**parameters, name: uri}
+
+    def thickness_column(self, fields, chosen):
+        """The fields, of which the chosen one has the name by which talus finds it."""
+        if fields.lookupField(chosen) < 0:
+            names = ", ".join(field.name() for field in fields)
+            raise QgsProcessingException(
+                f"{self.title_of('THICKNESS_ATTRIBUTE')}: {self.title_of('RELEASE')} has no attribute {chosen}; it has: {names}"
+            )
+        renamed = QgsFields()
+        for field in fields:
+            copy = QgsField(field)
+            if field.name() == chosen:
+                copy.setName(THICKNESS_COLUMN)
+            elif field.name().lower() == THICKNESS_COLUMN:
+                copy.setName(THICKNESS_COLUMN + "_not_used")
+            renamed.append(copy)
+        return renamed
+
     def write_layer(self, parameters, name, folder, context):
         """A layer as a GeoPackage in `folder`: only what is selected, if the user chose that. None: not given."""
-        source = self.parameterAsSource(parameters, name, context)
+        if not parameters.get(name):
+            return None
+        source = self.parameterAsSource(self.one_layer(parameters, name, context), name, context)
         if source is None:
             return None
+        fields = source.fields()
+        attribute = self.parameterAsString(parameters, "THICKNESS_ATTRIBUTE", context) if name == "RELEASE" else ""
+        if attribute:
+            fields = self.thickness_column(fields, attribute)
         file = os.path.join(folder, name.lower() + ".gpkg")
         options = QgsVectorFileWriter.SaveVectorOptions()
         options.driverName = "GPKG"
         options.layerOptions = ["FID=talus_fid"]  # a column of the layer may be called fid
         writer = QgsVectorFileWriter.create(
-            file, source.fields(), source.wkbType(), source.sourceCrs(), context.transformContext(), options
+            file, fields, source.wkbType(), source.sourceCrs(), context.transformContext(), options
         )
         for feature in source.getFeatures():
             if not writer.addFeature(feature, QgsFeatureSink.FastInsert):
@@ -117,6 +222,7 @@ class TalusAlgorithm(QgsProcessingAlgorithm):
         if writer.hasError() != QgsVectorFileWriter.NoError:
             raise QgsProcessingException(f"{source.sourceName()}: cannot be written for talus: {writer.errorMessage()}")
         del writer  # closes the file
+        self.named[file] = source.sourceName()
         return file
 
     def new_scene(self, parameters, folder, context, feedback):
@@ -130,13 +236,19 @@ class TalusAlgorithm(QgsProcessingAlgorithm):
         if terrain.dataProvider().name() != "gdal":
             raise QgsProcessingException(f"{terrain.name()}: is no raster in a file; save it as a GeoTIFF first")
         dem = QgsProviderRegistry.instance().decodeUri("gdal", terrain.source()).get("path", terrain.source())
+        given = [name for name in ("THICKNESS", "THICKNESS_ATTRIBUTE", "VOLUME") if self.parameterAsString(parameters, name, context)]
+        if len(given) > 1:
+            titles = " and ".join(self.title_of(name) for name in given)
+            raise QgsProcessingException(f"{titles} are given; give one of them")
+        for name, words in LAYER_KEYS.items():
+            self.named.update({word: self.title_of(name) for word in words})
         arguments = ["scene", "new", "--dem", dem, "--release", release, "-o", folder]
         buildings = self.write_layer(parameters, "BUILDINGS", inputs, context)
         if buildings:
             arguments += ["--buildings", buildings]
         arguments += self.option(parameters, "THICKNESS", context)
         arguments += self.option(parameters, "VOLUME", context)
-        run_program(arguments, feedback)
+        self.run_talus(arguments, feedback)
         return os.path.join(folder, "scene.toml")
 
     def scene_arguments(self, parameters, context, feedback):
@@ -153,9 +265,12 @@ class TalusAlgorithm(QgsProcessingAlgorithm):
             file = self.new_scene(parameters, os.path.join(folder, title), context, feedback)
         settings = lines_of(self.parameterAsString(parameters, "SETTINGS", context))
         for name, key in KEYS.items():
+            if self.parameterDefinition(name) is None:
+                continue
             value = self.parameterAsString(parameters, name, context)
             if value:
                 settings.append(f"{key}={value}")
+                self.named[f"--set {key}={value}: {key}"] = self.named[f"--set {key}={value}"] = self.title_of(name)
         arguments = [file] if file else []
         for setting in settings:
             arguments += ["--set", setting]

@@ -1,5 +1,6 @@
 #include "ensemble/ensemble_products.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <set>
@@ -17,6 +18,7 @@
 #include "products/layer_definition.hpp"
 #include "products/results_json.hpp"
 #include "products/text_file.hpp"
+#include "products/writers.hpp"
 #include "report/vector_style.hpp"
 
 namespace talus::ensemble {
@@ -410,6 +412,12 @@ Status write_ensemble(const EnsembleResult& result, const fs::path& folder) {
     products::LayerDefinition layers(result.scene->spec.scene.title, result.scene->crs.wkt);
     TALUS_TRY(write_building_polygons(result, folder, layers));
     TALUS_TRY(write_maps(result, folder, layers));
+    const auto& maps = result.reduction.maps;
+    const auto reached =
+        std::find_if(maps.begin(), maps.end(), [](const EnsembleMap& map) { return !map.grid.values.empty(); });
+    if (reached != maps.end()) {
+        TALUS_TRY(products::write_terrain(*result.scene, reached->grid.geometry.extent(), folder, layers));
+    }
     TALUS_TRY(layers.write(folder));
     TALUS_TRY(products::write_text_file(folder / "runs.csv", run_csv(result)));
     TALUS_TRY(products::write_text_file(folder / "buildings.csv", building_csv(result)));

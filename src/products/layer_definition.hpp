@@ -2,6 +2,8 @@
 
 #include <filesystem>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "core/result.hpp"
 
@@ -20,6 +22,16 @@ class LayerDefinition {
     void add_vector(const std::string& name, const std::string& file, const std::string& layer,
                     const std::string& style, bool shown);
 
+    /// A map of a moment: shown by QGIS's Temporal Controller from `begin` up to `end`, s since the start of the run.
+    struct Frame {
+        std::string name;
+        std::string source;  ///< a raster within the folder, as GDAL names it from there: "./series/depth.tif"
+        std::string style;
+        double begin = 0, end = 0;
+    };
+    /// A group of its own under the vectors, switched off; the last frame is on top.
+    void add_over_time(const std::string& group, const std::vector<Frame>& frames);
+
     /// Writes results.qlr.
     [[nodiscard]] Status write(const std::filesystem::path& folder) const;
 
@@ -27,11 +39,12 @@ class LayerDefinition {
     struct Parts {
         std::string tree, layers;
     };
+    /// `more`: elements of the layer beside those of its style.
     void add(Parts& parts, const std::string& name, const std::string& source, const char* type, const char* provider,
-             const std::string& style, bool shown);
+             const std::string& style, bool shown, const std::string& more = "");
 
     std::string group_, wkt_;
-    Parts vectors_, rasters_;
+    Parts vectors_, over_time_, rasters_;
     int count_ = 0;
 };
 

@@ -36,11 +36,14 @@ Status write_report(const scene::Scene& scene, const run::RunResult& result,
 }  // namespace
 
 Status write_products(const scene::Scene& scene, const run::RunResult& result, const std::filesystem::path& folder,
-                      const std::vector<run::Comparison>& comparisons, std::string_view changed) {
+                      const std::vector<run::Comparison>& comparisons, std::string_view changed,
+                      const std::vector<double>& frame_times) {
     TALUS_TRY(write_partial_note(result, folder));
     if (result.fault) TALUS_TRY(write_fault(*result.fault, folder / "fault"));
     LayerDefinition layers(title_of(scene, result), scene.crs.wkt);
     TALUS_TRY(write_maps(scene, result, folder, layers));
+    TALUS_TRY(write_terrain(scene, result.observation.maps.peak_depth.geometry.extent(), folder, layers));
+    add_maps_over_time(scene, result, frame_times, layers);
     TALUS_TRY(write_tables(scene, result, folder, changed));
     TALUS_TRY(write_vectors(scene, result, folder, layers));
     TALUS_TRY(layers.write(folder));

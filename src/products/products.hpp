@@ -44,10 +44,10 @@ class OutputFolder {
 /// results.json, report.html; where there are comparisons with variants of the scene, convergence.csv and variants.csv
 /// too; PARTIAL.txt where the run did not end by itself, and the folder fault where a step could not be trusted. Errors
 /// name the file and the cause (disk full, ...). `changed`: what was changed during the run, which the tables then say
-/// in a last column; empty: nothing.
+/// in a last column; empty: nothing. `frame_times`: of the maps over time that are in the folder's series, s.
 [[nodiscard]] Status write_products(const scene::Scene& scene, const run::RunResult& result,
                                     const std::filesystem::path& folder,
-                                    const std::vector<run::Comparison>& comparisons = {},
-                                    std::string_view changed = {});
+                                    const std::vector<run::Comparison>& comparisons = {}, std::string_view changed = {},
+                                    const std::vector<double>& frame_times = {});
 
 }  // namespace talus::products

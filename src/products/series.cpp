@@ -66,6 +66,7 @@ Status Series::finish(const run::RunResult& result) {
     TALUS_TRY(write_maps(result));
     TALUS_TRY(write_views(result));
     points_.reset();
+    times_ = frames_->times();
     frames_.reset();
     return {};
 }

@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <optional>
 #include <string_view>
+#include <vector>
 
 #include "core/result.hpp"
 #include "products/particle_frames.hpp"
@@ -27,6 +28,8 @@ class Series {
     [[nodiscard]] Status add(const run::Frame& frame);
     /// On the cells of the result's maps.
     [[nodiscard]] Status finish(const run::RunResult& result);
+    /// Of the frames, s; known once it has finished.
+    [[nodiscard]] const std::vector<double>& times() const { return times_; }
 
   private:
     [[nodiscard]] bool wants(std::string_view format) const;
@@ -36,6 +39,7 @@ class Series {
     const scene::Scene& scene_;
     std::filesystem::path folder_, final_folder_;
     std::optional<SeriesFrames> frames_;
+    std::vector<double> times_;
     std::optional<ParticleSeries> particles_;
     std::optional<ParticleFrames> points_;
 };

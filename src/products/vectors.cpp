@@ -1,5 +1,9 @@
 #include <algorithm>
 #include <cmath>
+#include <set>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include "core/try.hpp"
 #include "geo/raster_outline.hpp"
@@ -12,12 +16,31 @@ namespace talus::products {
 
 namespace {
 
+/// The tables of a GeoPackage, and which of them have features.
+class Tables {
+  public:
+    Tables(std::string file, const geo::Crs& crs) : file_(std::move(file)), crs_(crs) {}
+
+    [[nodiscard]] Status write(const std::string& table, const std::vector<geo::Field>& fields,
+                               const std::vector<geo::OutputFeature>& features) {
+        if (!features.empty()) filled_.insert(table);
+        return write_geopackage_layer(file_, table, fields, features, crs_);
+    }
+    [[nodiscard]] const std::string& file() const { return file_; }
+    [[nodiscard]] bool has_features(const std::string& table) const { return filled_.count(table) != 0; }
+
+  private:
+    std::string file_;
+    const geo::Crs& crs_;
+    std::set<std::string> filled_;
+};
+
 geo::Attribute yes_or_no(bool value) {
     return std::string(value ? "yes" : "no");
 }
 
 /// The columns are those of buildings.csv.
-Status write_buildings(const scene::Scene& scene, const observe::Observation& observation, const std::string& file) {
+Status write_buildings(const scene::Scene& scene, const observe::Observation& observation, Tables& tables) {
     const std::vector<geo::Field> fields = {{"name", true},
                                             {"hit", true},
                                             {"first_hit_time_s"},
@@ -74,11 +97,11 @@ Status write_buildings(const scene::Scene& scene, const observe::Observation& ob
                              b.peak_speed,
                              intensity != nullptr ? intensity->name : std::string()}});
     }
-    return write_geopackage_layer(file, "buildings", fields, features, scene.crs);
+    return tables.write("buildings", fields, features);
 }
 
 /// A polygon per patch; `volume_m3` is that of the whole release.
-Status write_releases(const scene::Scene& scene, const std::string& file) {
+Status write_releases(const scene::Scene& scene, Tables& tables) {
     std::vector<geo::OutputFeature> features;
     for (const terrain::Release& release : scene.releases) {
         for (const terrain::ReleasePatch& patch : release.patches) {
@@ -88,9 +111,8 @@ Status write_releases(const scene::Scene& scene, const std::string& file) {
                 {{patch.polygon}, {}, {release.name, release.spec.start_time, thickness, release.volume}});
         }
     }
-    return write_geopackage_layer(file, "release",
-                                  {{"name", true}, {"start_time_s"}, {"thickness_m"}, {"release_volume_m3"}}, features,
-                                  scene.crs);
+    return tables.write("release", {{"name", true}, {"start_time_s"}, {"thickness_m"}, {"release_volume_m3"}},
+                        features);
 }
 
 /// The front sample nearest to a chainage; null beyond the front.
@@ -129,7 +151,7 @@ std::vector<geo::OutputFeature> chainage_marks(const scene::Scene& scene, const 
 }
 
 /// The cells of every intensity class that occurs, a feature per class.
-Status write_intensity(const scene::Scene& scene, const observe::Observation& observation, const std::string& file) {
+Status write_intensity(const scene::Scene& scene, const observe::Observation& observation, Tables& tables) {
     const report::IntensityGuideline& guideline = report::intensity_guideline(scene.spec.outputs.intensity_guideline);
     const Grid<float> map = intensity_map(guideline, observation.maps);
     std::vector<geo::OutputFeature> features;
@@ -140,14 +162,12 @@ Status write_intensity(const scene::Scene& scene, const observe::Observation& ob
                             {},
                             {static_cast<double>(outline.number), c.name, c.criterion, guideline.name, outline.area}});
     }
-    return write_geopackage_layer(
-        file, "intensity", {{"class"}, {"intensity", true}, {"criterion", true}, {"guideline", true}, {"area_m2"}},
-        features, scene.crs);
+    return tables.write(
+        "intensity", {{"class"}, {"intensity", true}, {"criterion", true}, {"guideline", true}, {"area_m2"}}, features);
 }
 
 /// One feature: where a map is at least `level`, m.
-Status write_outline(const scene::Scene& scene, const Grid<float>& map, double level, const char* layer,
-                     const std::string& file) {
+Status write_outline(const Grid<float>& map, double level, const char* layer, Tables& tables) {
     Grid<float> inside = map;
     for (float& value : inside.values) value = value >= static_cast<float>(level) ? 1 : 0;
     std::vector<geo::OutputFeature> features;
@@ -155,11 +175,11 @@ Status write_outline(const scene::Scene& scene, const Grid<float>& map, double l
     for (geo::ClassOutline& outline : outlines) {
         features.push_back({std::move(outline.polygons), {}, {level, outline.area}});
     }
-    return write_geopackage_layer(file, layer, {{"above_m"}, {"area_m2"}}, features, scene.crs);
+    return tables.write(layer, {{"above_m"}, {"area_m2"}}, features);
 }
 
 /// A point per gauge.
-Status write_gauges(const scene::Scene& scene, const observe::Observation& observation, const std::string& file) {
+Status write_gauges(const observe::Observation& observation, Tables& tables) {
     std::vector<geo::OutputFeature> features;
     for (const observe::GaugeRecord& g : observation.gauges) {
         features.push_back({{},
@@ -167,21 +187,20 @@ Status write_gauges(const scene::Scene& scene, const observe::Observation& obser
                             {g.gauge.name, g.gauge.chainage, g.arrival_time, g.peak_depth, g.peak_depth_time,
                              g.peak_speed, g.peak_speed_time}});
     }
-    return write_geopackage_layer(file, "gauges",
-                                  {{"name", true},
-                                   {"chainage_m"},
-                                   {"first_arrival_time_s"},
-                                   {"peak_depth_m"},
-                                   {"peak_depth_time_s"},
-                                   {"peak_speed_mps"},
-                                   {"peak_speed_time_s"}},
-                                  features, scene.crs);
+    return tables.write("gauges",
+                        {{"name", true},
+                         {"chainage_m"},
+                         {"first_arrival_time_s"},
+                         {"peak_depth_m"},
+                         {"peak_depth_time_s"},
+                         {"peak_speed_mps"},
+                         {"peak_speed_time_s"}},
+                        features);
 }
 
-Status write_zoom(const scene::Scene& scene, const run::ZoomRecord& zoom, const std::string& file) {
-    return write_geopackage_layer(file, "zoom", {{"around", true}, {"volume_in_m3"}, {"particle_spacing_m"}},
-                                  {{{zoom.area}, {}, {zoom.around, zoom.brought_volume, zoom.particle_spacing}}},
-                                  scene.crs);
+Status write_zoom(const run::ZoomRecord& zoom, Tables& tables) {
+    return tables.write("zoom", {{"around", true}, {"volume_in_m3"}, {"particle_spacing_m"}},
+                        {{{zoom.area}, {}, {zoom.around, zoom.brought_volume, zoom.particle_spacing}}});
 }
 
 struct DrawnLayer {
@@ -232,28 +251,31 @@ std::vector<DrawnLayer> drawn_layers(const scene::Scene& scene, const run::RunRe
 
 Status write_vectors(const scene::Scene& scene, const run::RunResult& result, const std::filesystem::path& folder,
                      LayerDefinition& layers) {
-    const std::string file = (folder / "results.gpkg").string();
+    Tables tables((folder / "results.gpkg").string(), scene.crs);
     const observe::Observation& observation = result.observation;
-    TALUS_TRY(write_buildings(scene, observation, file));
-    TALUS_TRY(write_releases(scene, file));
-    TALUS_TRY(write_intensity(scene, observation, file));
+    TALUS_TRY(write_buildings(scene, observation, tables));
+    TALUS_TRY(write_releases(scene, tables));
+    TALUS_TRY(write_intensity(scene, observation, tables));
     const double least = scene.spec.outputs.arrival_depth;
-    TALUS_TRY(write_outline(scene, observation.maps.peak_depth, least, "inundation", file));
-    TALUS_TRY(write_outline(scene, observation.maps.deposit_depth, least, "deposit", file));
-    if (!observation.gauges.empty()) TALUS_TRY(write_gauges(scene, observation, file));
-    if (result.zoom) TALUS_TRY(write_zoom(scene, *result.zoom, file));
+    TALUS_TRY(write_outline(observation.maps.peak_depth, least, "inundation", tables));
+    TALUS_TRY(write_outline(observation.maps.deposit_depth, least, "deposit", tables));
+    if (!observation.gauges.empty()) TALUS_TRY(write_gauges(observation, tables));
+    if (result.zoom) TALUS_TRY(write_zoom(*result.zoom, tables));
+    if (!scene.flow_path.empty()) {
+        const geo::OutputFeature line{
+            {}, scene.flow_path.points(), {scene.flow_path.length(), std::string(origin_text(scene.flow_path_origin))}};
+        TALUS_TRY(tables.write("flow_path", {{"length_m"}, {"origin", true}}, {line}));
+        TALUS_TRY(tables.write("chainage", {{"chainage_m"}, {"first_arrival_time_s"}, {"front_velocity_mps"}},
+                               chainage_marks(scene, observation)));
+    }
     std::vector<geo::LayerStyle> styles;
     for (const DrawnLayer& layer : drawn_layers(scene, result)) {
         styles.push_back({layer.table, layer.style});
+        // A table without features would be a layer in which there is nothing to see.
+        if (!tables.has_features(layer.table)) continue;
         layers.add_vector(layer.title, "results.gpkg", layer.table, layer.style, layer.shown);
     }
-    TALUS_TRY(geo::write_geopackage_styles(file, styles));
-    if (scene.flow_path.empty()) return {};
-    const geo::OutputFeature line{
-        {}, scene.flow_path.points(), {scene.flow_path.length(), std::string(origin_text(scene.flow_path_origin))}};
-    TALUS_TRY(write_geopackage_layer(file, "flow_path", {{"length_m"}, {"origin", true}}, {line}, scene.crs));
-    return write_geopackage_layer(file, "chainage", {{"chainage_m"}, {"first_arrival_time_s"}, {"front_velocity_mps"}},
-                                  chainage_marks(scene, observation), scene.crs);
+    return geo::write_geopackage_styles(tables.file(), styles);
 }
 
 }  // namespace talus::products

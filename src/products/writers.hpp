@@ -20,6 +20,16 @@ namespace talus::products {
 [[nodiscard]] Status write_maps(const scene::Scene& scene, const run::RunResult& result,
                                 const std::filesystem::path& folder, LayerDefinition& layers);
 
+/// terrain.tif, the elevations of a place and around it, with a style that draws their hillshade. It is added to
+/// `layers`: below all that is added before.
+[[nodiscard]] Status write_terrain(const scene::Scene& scene, const Extent& place, const std::filesystem::path& folder,
+                                   LayerDefinition& layers);
+
+/// Adds the maps over time to `layers`, from the GeoTIFF or else the NetCDF files of the folder's series. `times`: of
+/// all frames, s; empty: there are none.
+void add_maps_over_time(const scene::Scene& scene, const run::RunResult& result, const std::vector<double>& times,
+                        LayerDefinition& layers);
+
 /// front.csv, run_out.csv, buildings.csv, structures_over_time.csv, timeseries.csv, and erosion.csv where there is a
 /// bed. A value that does not exist is an empty field. `changed`: as for write_products.
 [[nodiscard]] Status write_tables(const scene::Scene& scene, const run::RunResult& result,

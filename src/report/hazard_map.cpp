@@ -109,7 +109,7 @@ double greatest(const Grid<float>& grid) {
     return most;
 }
 
-std::string qgis_style(const HazardMap& map, double largest) {
+std::string qgis_style(const HazardMap& map, double largest, std::size_t band) {
     if (!map.categories.empty()) return category_style(map);
     largest = std::max(largest, map.full_scale);
     const report::Classes classes = map.breaks.empty() ? report::even_classes(largest, map.ramp)
@@ -131,7 +131,7 @@ std::string qgis_style(const HazardMap& map, double largest) {
         items += item(upper, classes.colours[k], 255, label);
     }
     return layer_style(fmt::format(
-        R"qml(    <rasterrenderer type="singlebandpseudocolor" band="1" opacity="0.85" alphaBand="-1" nodataColor="" classificationMin="{0}" classificationMax="{1}">
+        R"qml(    <rasterrenderer type="singlebandpseudocolor" band="{3}" opacity="0.85" alphaBand="-1" nodataColor="" classificationMin="{0}" classificationMax="{1}">
       <rasterTransparency/>
       <minMaxOrigin>
         <limits>None</limits>
@@ -144,7 +144,15 @@ std::string qgis_style(const HazardMap& map, double largest) {
       </rastershader>
     </rasterrenderer>
 )qml",
-        classes.breaks.front(), std::max(largest, classes.breaks.back()), items));
+        classes.breaks.front(), std::max(largest, classes.breaks.back()), items, band));
+}
+
+std::string qgis_hillshade_style() {
+    return layer_style(
+        R"qml(    <rasterrenderer type="hillshade" band="1" azimuth="315" angle="45" zfactor="1" multidirection="0" opacity="1" alphaBand="-1" nodataColor="">
+      <rasterTransparency/>
+    </rasterrenderer>
+)qml");
 }
 
 }  // namespace talus::report

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <string>
 #include <vector>
 
@@ -45,6 +46,9 @@ struct HazardMap {
 [[nodiscard]] double greatest(const Grid<float>& grid);
 
 /// A QGIS 3 layer style: classes with labels in the map's unit, transparent below the first one and at nodata.
-[[nodiscard]] std::string qgis_style(const HazardMap& map, double largest);
+[[nodiscard]] std::string qgis_style(const HazardMap& map, double largest, std::size_t band = 1);
+
+/// A QGIS 3 layer style of elevations: their hillshade.
+[[nodiscard]] std::string qgis_hillshade_style();
 
 }  // namespace talus::report

@@ -56,6 +56,8 @@ constexpr ExportFile export_files[] = {
     {"deposit_depth.qml", "application/xml", "QGIS style of it"},
     {"intensity.tif", "image/tiff", "Classes of intensity after a guideline"},
     {"intensity.qml", "application/xml", "QGIS style of it"},
+    {"terrain.tif", "image/tiff", "Elevation of the terrain, m"},
+    {"terrain.qml", "application/xml", "QGIS style of it: hillshade"},
     {"peak_thickness.tif", "image/tiff", "Peak flow thickness normal to the slope, m", Needs::erosion},
     {"peak_thickness.qml", "application/xml", "QGIS style of it", Needs::erosion},
     {"erosion_depth.tif", "image/tiff", "Depth of erosion of the bed, m", Needs::erosion},

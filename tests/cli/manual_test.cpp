@@ -46,6 +46,26 @@ TEST(Completion, OffersFilesWhereThereIsNoOption) {
     EXPECT_THAT(offered_by_bash({"talus", "run", "try"}), ElementsAre("try.sh"));
 }
 
+TEST(Completion, OffersKeysOfTheSceneAfterSetAndVary) {
+    EXPECT_THAT(offered_by_bash({"talus", "run", "--set", "material.friction_c"}),
+                ElementsAre("material.friction_coefficient="));
+    EXPECT_THAT(offered_by_bash({"talus", "ensemble", "my.toml", "--vary", "release.vol"}),
+                ElementsAre("release.volume_m3="));
+    EXPECT_THAT(offered_by_bash({"talus", "run", "--set", "=", "release.vol"}), ElementsAre("release.volume_m3="))
+        << "--set=release.vol, as bash splits it";
+    EXPECT_THAT(offered_by_bash({"talus", "run", "--output", "release.vol"}), IsEmpty());
+}
+
+TEST(Completion, OffersTheValuesOfAKeyThatHasAListOfThem) {
+    EXPECT_THAT(offered_by_bash({"talus", "run", "--set", "solver.model", "=", "depth"}),
+                ElementsAre("depth_averaged"));
+    EXPECT_THAT(offered_by_bash({"talus", "run", "--set", "scene.reconstruction", "="}), ElementsAre("true", "false"));
+    EXPECT_THAT(offered_by_bash({"talus", "run", "--set", "solver.model=depth"}),
+                ElementsAre("solver.model=depth_averaged"))
+        << "where bash is told not to split at =";
+    EXPECT_THAT(offered_by_bash({"talus", "run", "--set", "material.viscosity", "=", "0"}), IsEmpty());
+}
+
 TEST(Completion, RefusesOtherShells) {
     const auto outcome = run_program({"completion", "fish"});
     EXPECT_EQ(outcome.exit_code, 2);

@@ -30,10 +30,11 @@ TEST(Run, WritesEveryProductAndSaysWhereTheReportIs) {
     const auto outcome = run_program({"run", "slope.toml"}, {.folder = scene.folder()});
     ASSERT_EQ(outcome.exit_code, 0) << outcome.error;
     for (const char* name :
-         {"peak_depth.tif", "peak_depth.qml", "peak_speed.tif", "peak_speed.qml", "peak_pressure.tif",
-          "peak_pressure.qml", "arrival_time.tif", "arrival_time.qml", "intensity.tif", "intensity.qml",
-          "deposit_depth.tif", "deposit_depth.qml", "front.csv", "buildings.csv", "results.gpkg", "timeseries.csv",
-          "manifest.json", "results.json", "report.html"}) {
+         {"peak_depth.tif",    "peak_depth.qml",    "peak_speed.tif",   "peak_speed.qml", "peak_pressure.tif",
+          "peak_pressure.qml", "arrival_time.tif",  "arrival_time.qml", "intensity.tif",  "intensity.qml",
+          "deposit_depth.tif", "deposit_depth.qml", "terrain.tif",      "terrain.qml",    "front.csv",
+          "buildings.csv",     "results.gpkg",      "timeseries.csv",   "manifest.json",  "results.json",
+          "report.html"}) {
         EXPECT_TRUE(fs::exists(scene.folder() / "talus_out/slope" / name)) << name;
     }
     EXPECT_THAT(outcome.out, HasSubstr("talus_out/slope/report.html"));

@@ -96,6 +96,81 @@ TEST_F(Products, OneFileOpensAllLayersInQgis) {
     EXPECT_THAT(names, testing::Contains("Intensity"));
 }
 
+TEST_F(Products, QgisGetsTheGroundBelowTheMaps) {
+    const GDALDatasetUniquePtr data(GDALDataset::Open(folder_->file("terrain.tif").c_str()));
+    ASSERT_TRUE(data);
+    double to_world[6];
+    data->GetGeoTransform(to_world);
+    const GridGeometry& whole = scene_->terrain.elevation().geometry;
+    const GridGeometry& maps = result_->observation.maps.peak_depth.geometry;
+    const double width = data->GetRasterXSize() * to_world[1], height = data->GetRasterYSize() * to_world[1];
+    EXPECT_LE(to_world[0],
+              std::max(maps.extent().x_min - 0.4 * (maps.extent().x_max - maps.extent().x_min), whole.x_min));
+    EXPECT_GE(to_world[0], whole.x_min);
+    EXPECT_GE(to_world[3] - height, whole.y_min);
+    const PlanPoint middle{to_world[0] + 0.5 * width, to_world[3] - 0.5 * height};
+    float elevation = 0;
+    ASSERT_EQ(data->GetRasterBand(1)->RasterIO(GF_Read, data->GetRasterXSize() / 2, data->GetRasterYSize() / 2, 1, 1,
+                                               &elevation, 1, 1, GDT_Float32, 0, 0),
+              CE_None);
+    EXPECT_NEAR(elevation, scene_->terrain.elevation_at(middle), 3 * whole.cell) << "of a cell beside the middle";
+    const std::string layers = test::read_text(folder_->path() / "results.qlr");
+    EXPECT_GT(layers.find("name=\"Terrain, hillshade\""), layers.find("name=\"Intensity\"")) << "is at the bottom";
+    EXPECT_THAT(layers, testing::HasSubstr("rasterrenderer type=\"hillshade\""));
+}
+
+TEST_F(Products, QgisDoesNotOpenTablesWithoutFeatures) {
+    const TemporaryFolder folder;
+    scene::Scene scene = *scene_;
+    scene.buildings.clear();
+    run::RunResult result = *result_;
+    result.observation.buildings.clear();
+    for (float& depth : result.observation.maps.deposit_depth.values) depth = 0;
+    ASSERT_TRUE(write_products(scene, result, folder.path()).ok());
+    const std::string layers = test::read_text(folder.path() / "results.qlr");
+    EXPECT_THAT(layers, testing::Not(testing::HasSubstr("layername=buildings")));
+    EXPECT_THAT(layers, testing::Not(testing::HasSubstr("layername=deposit")));
+    EXPECT_THAT(layers, testing::HasSubstr("layername=release"));
+    EXPECT_TRUE(read_polygons(folder.file("results.gpkg"), "buildings", scene.crs).ok()) << "the table is there";
+}
+
+TEST_F(Products, QgisShowsMapsOverTime) {
+    scene::Scene scene = *scene_;
+    const auto layers_with = [&](const std::vector<double>& times) {
+        const TemporaryFolder folder;
+        EXPECT_TRUE(write_products(scene, *result_, folder.path(), {}, {}, times).ok());
+        return test::read_text(folder.path() / "results.qlr");
+    };
+    const std::vector<double> times = {0, 1, 2.5};
+    EXPECT_THAT(layers_with(times), testing::Not(testing::HasSubstr("over time"))) << "the scene asks for no maps";
+    scene.spec.outputs.series = {"netcdf"};
+    EXPECT_THAT(layers_with(times), testing::HasSubstr("NETCDF:&quot;./series/maps.nc&quot;:depth"));
+
+    scene.spec.outputs.series = {"netcdf", "geotiff"};
+    scene.spec.outputs.series_interval = 1;
+    CPLXMLNode* tree = CPLParseXMLString(layers_with(times).c_str());
+    ASSERT_NE(tree, nullptr);
+    std::vector<std::string> seen;
+    for (CPLXMLNode* layer = CPLGetXMLNode(tree, "=qlr.maplayers")->psChild; layer != nullptr; layer = layer->psNext) {
+        if (CPLGetXMLValue(layer, "datasource", "") != std::string("./series/speed.tif")) continue;
+        seen.push_back(std::string(CPLGetXMLValue(layer, "pipe.rasterrenderer.band", "")) + ": " +
+                       CPLGetXMLValue(layer, "temporal.fixedRange.start", "") + " to " +
+                       CPLGetXMLValue(layer, "temporal.fixedRange.end", ""));
+    }
+    CPLDestroyXMLNode(tree);
+    EXPECT_THAT(seen, testing::ElementsAre("3: 2000-01-01T00:00:02.500Z to 2000-01-01T00:00:03.499Z",
+                                           "2: 2000-01-01T00:00:01.000Z to 2000-01-01T00:00:02.499Z",
+                                           "1: 2000-01-01T00:00:00.000Z to 2000-01-01T00:00:00.999Z"));
+
+    std::vector<double> many;
+    for (int k = 0; k < 250; ++k) many.push_back(60 * k);
+    const std::string text = layers_with(many);
+    std::size_t count = 0;
+    for (std::size_t at = 0; (at = text.find("<fixedRange>", at)) != std::string::npos; ++at) ++count;
+    EXPECT_EQ(count, 3U * 84) << "every third frame of depth, speed and pressure";
+    EXPECT_THAT(text, testing::HasSubstr("<start>2000-01-01T04:09:00.000Z</start>"));
+}
+
 TEST_F(Products, GeoPackageHoldsBuildingsReleasesPathAndMarks) {
     const std::string file = folder_->file("results.gpkg");
     const auto buildings = read_polygons(file, "buildings", scene_->crs);

@@ -28,7 +28,7 @@ TEST_F(Products, FolderHoldsWhatItShouldAndNothingElse) {
                     "front.csv", "intensity.qml", "intensity.tif", "manifest.json", "peak_depth.qml", "peak_depth.tif",
                     "peak_pressure.qml", "peak_pressure.tif", "peak_speed.qml", "peak_speed.tif", "report.html",
                     "results.gpkg", "results.json", "results.kml", "results.qlr", "run_out.csv", "stac_item.json",
-                    "structures_over_time.csv", "timeseries.csv"));
+                    "structures_over_time.csv", "terrain.qml", "terrain.tif", "timeseries.csv"));
 }
 
 TEST_F(Products, PartialResultSaysSoEverywhere) {

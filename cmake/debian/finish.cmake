@@ -1,0 +1,12 @@
+# After CPack has made the packages: it lets the library's scripts call ldconfig, where Debian wants a trigger alone.
+foreach(package IN LISTS CPACK_PACKAGE_FILES)
+  if(NOT package MATCHES "/libtalus[0-9.]+_.*\\.deb$")
+    continue()
+  endif()
+  set(unpacked ${package}.unpacked)
+  file(REMOVE_RECURSE ${unpacked})
+  execute_process(COMMAND dpkg-deb --raw-extract ${package} ${unpacked} COMMAND_ERROR_IS_FATAL ANY)
+  file(REMOVE ${unpacked}/DEBIAN/postinst ${unpacked}/DEBIAN/postrm)
+  execute_process(COMMAND dpkg-deb --root-owner-group --build ${unpacked} ${package} OUTPUT_QUIET COMMAND_ERROR_IS_FATAL ANY)
+  file(REMOVE_RECURSE ${unpacked})
+endforeach()
