@@ -131,6 +131,10 @@ Result<std::unique_ptr<Scenario>> Scenario::open_at(const Journal& journal, std:
     return std::unique_ptr<Scenario>(new Scenario(std::move(parts)));
 }
 
+std::unique_ptr<Scenario> Scenario::fork() const {
+    return std::unique_ptr<Scenario>(new Scenario(std::make_unique<Parts>(*parts_)));
+}
+
 std::function<Result<std::unique_ptr<Scenario>>(const sim::Progress&)> Scenario::copying() const {
     auto parts = std::make_shared<std::unique_ptr<Parts>>(std::make_unique<Parts>(parts_->scene, parts_->options));
     (*parts)->next = parts_->next;
