@@ -337,6 +337,9 @@ const scene::Scene& Scenario::scene() const {
 const sim::Model& Scenario::model() const {
     return parts_->run->model();
 }
+const sim::Ground& Scenario::ground() const {
+    return parts_->run->ground();
+}
 const sim::State& Scenario::state() const {
     return parts_->run->state();
 }

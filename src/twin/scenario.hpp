@@ -100,6 +100,7 @@ class Scenario {
     [[nodiscard]] std::uint64_t revision() const;  ///< grows with every change of the setup
     [[nodiscard]] const scene::Scene& scene() const;
     [[nodiscard]] const sim::Model& model() const;
+    [[nodiscard]] const sim::Ground& ground() const;  ///< as entrainment has left it
     [[nodiscard]] const sim::State& state() const;
     [[nodiscard]] const observe::Observer& observer() const;
 
