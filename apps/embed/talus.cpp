@@ -64,8 +64,9 @@ void give(std::unique_ptr<Scenario> scenario, bool can_be_saved, talus_simulatio
     made->scenario = std::move(scenario);
     made->can_be_saved = can_be_saved;
     for (const std::string& note : opened.scene().notes) tell(TALUS_LOG_WARNING, note);
-    tell(TALUS_LOG_INFO, fmt::format("opened \"{}\" at t = {:.4g} s: {} particles of {:.3g} m3", opened.scene().spec.scene.title,
-                                     opened.time(), opened.state().count, opened.model().particle_volume()));
+    tell(TALUS_LOG_INFO,
+         fmt::format("opened \"{}\" at t = {:.4g} s: {} particles of {:.3g} m3", opened.scene().spec.scene.title,
+                     opened.time(), opened.state().count, opened.model().particle_volume()));
     *simulation = made.release();
 }
 
