@@ -11,6 +11,7 @@
 #include <fmt/format.h>
 
 #include "core/result.hpp"
+#include "hooks.hpp"
 #include "talus.h"
 
 /// What every call of talus.h has in common: codes and sentences, NULL, sizes of structs, progress and cancelling.
@@ -72,6 +73,8 @@ inline int say(talus_error* error, int code, const char* text) {
         error->code = code;
         (void)std::snprintf(error->text, sizeof error->text, "%s", text);
     }
+    if (code == TALUS_CANCELLED) tell(TALUS_LOG_INFO, text);
+    if (code != TALUS_OK && code != TALUS_CANCELLED) tell(TALUS_LOG_ERROR, text);
     return code;
 }
 

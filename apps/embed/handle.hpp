@@ -4,11 +4,14 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "call.hpp"
+#include "core/geometry.hpp"
 #include "core/grid.hpp"
 #include "core/try.hpp"
+#include "hooks.hpp"
 #include "twin/scenario.hpp"
 
 namespace talus::embed {
@@ -18,13 +21,38 @@ namespace talus::embed {
 struct Answers {
     std::optional<std::string> message;
     std::map<std::string, std::string, std::less<>> json;
-    std::map<std::string, Grid<float>, std::less<>> maps;
+    struct Map {
+        GridGeometry geometry;
+        Buffer<float> values;
+    };
+    std::map<std::string, Map, std::less<>> maps;
     std::map<std::size_t, std::string> structure_names;
     struct Front {
-        std::vector<double> chainage, arrival_time, velocity;
+        Buffer<double> chainage, arrival_time, velocity;
     };
     std::optional<Front> front;
+    /// The debris at a time within the last step.
+    struct Moment {
+        Buffer<float> x, y, z, velocity_x, velocity_y, velocity_z;
+    };
+    std::map<double, Moment> moments;
+    struct Surface {
+        Buffer<float> positions, normals, depth, speed;
+        Buffer<std::uint32_t> indices;
+    };
+    std::optional<Surface> surface;
     std::string created;
+};
+
+/// The debris before the last step, for a time between the two.
+struct Before {
+    std::uint64_t step = 0;
+    double time = 0;  ///< s
+    struct Particle {
+        LocalPoint position, velocity;
+        bool present = false;
+    };
+    std::vector<Particle> of_id;
 };
 
 }  // namespace talus::embed
@@ -33,6 +61,7 @@ struct talus_simulation {
     std::unique_ptr<talus::twin::Scenario> scenario;
     bool can_be_saved = true;
     bool changing = false;  ///< a call that changes it has not returned
+    std::optional<talus::embed::Before> before = {};
     mutable talus::embed::Answers answers = {};
 };
 

@@ -15,6 +15,7 @@
 #include "core/try.hpp"
 #include "geo/raster.hpp"
 #include "geo/vector.hpp"
+#include "grid_geometry.hpp"
 #include "products/text_file.hpp"
 
 namespace talus::embed {
@@ -27,25 +28,6 @@ constexpr std::string_view terrain_file = "terrain.tif", release_file = "release
 
 constexpr float lowest_elevation = -12000, highest_elevation = 9000;  // m, as for rasters
 constexpr double highest_building = 1000;                             // m, as buildings.default_height_m
-
-Result<GridGeometry> geometry_of(const talus_grid& grid) {
-    constexpr std::int32_t most = 1 << 20;
-    constexpr std::int64_t most_cells = 400'000'000;
-    for (const auto& [name, value] : {std::pair{"x_min", grid.x_min}, std::pair{"y_min", grid.y_min}}) {
-        if (!std::isfinite(value)) return Error{fmt::format("grid.{} = {}: must be a finite number", name, value)};
-    }
-    if (!(grid.cell > 0) || !std::isfinite(grid.cell)) {
-        return Error{fmt::format("grid.cell = {}: must be a finite number above 0", grid.cell)};
-    }
-    for (const auto& [name, count] : {std::pair{"columns", grid.columns}, std::pair{"rows", grid.rows}}) {
-        if (count < 2 || count > most) return Error{fmt::format("grid.{} = {}: must be 2 to {}", name, count, most)};
-    }
-    if (std::int64_t{grid.columns} * grid.rows > most_cells) {
-        return Error{
-            fmt::format("grid: has {} x {} cells; it must have at most {}", grid.columns, grid.rows, most_cells)};
-    }
-    return GridGeometry{grid.x_min, grid.y_min, grid.cell, grid.columns, grid.rows};
-}
 
 /// `fits`: whether a value is one that `allowed` names.
 template <class Fits>
@@ -147,7 +129,7 @@ Status write_buildings(const fs::path& file, const std::vector<talus_building>& 
 Status write_files(const talus_arrays& arrays, const fs::path& folder, const fs::path& scene_file) {
     TALUS_TRY(need(arrays.crs, "crs"));
     TALUS_ASSIGN(const geo::Crs crs, geo::crs_from_text(arrays.crs));
-    TALUS_ASSIGN(const GridGeometry geometry, geometry_of(arrays.grid));
+    TALUS_ASSIGN(const GridGeometry geometry, geometry_of(arrays.grid, 2));
     TALUS_TRY(check_rasters(arrays, geometry));
     TALUS_ASSIGN(const std::vector<talus_building> buildings, buildings_of(arrays));
     TALUS_TRY(write_raster(folder / terrain_file, geometry, arrays.elevation, "elevation", crs));

@@ -39,6 +39,7 @@ using talus::embed::Changing;
 using talus::embed::check_size;
 using talus::embed::guarded;
 using talus::embed::need;
+using talus::embed::tell;
 using talus::embed::Watch;
 using talus::twin::Scenario;
 
@@ -58,10 +59,34 @@ Result<std::vector<std::string>> texts_of(const char* const* settings, std::size
 }
 
 void give(std::unique_ptr<Scenario> scenario, bool can_be_saved, talus_simulation** simulation) {
+    const Scenario& opened = *scenario;
     auto made = std::make_unique<talus_simulation>();
     made->scenario = std::move(scenario);
     made->can_be_saved = can_be_saved;
+    for (const std::string& note : opened.scene().notes) tell(TALUS_LOG_WARNING, note);
+    tell(TALUS_LOG_INFO,
+         fmt::format("opened \"{}\" at t = {:.4g} s: {} particles of {:.3g} m3", opened.scene().spec.scene.title,
+                     opened.time(), opened.state().count, opened.model().particle_volume()));
     *simulation = made.release();
+}
+
+/// The longest step that may come next, s.
+double longest_step(const Scenario& scenario) {
+    const talus::sim::Model& model = scenario.model();
+    return model.solver.time_step.value_or(model.largest_time_step());
+}
+
+/// Keeps where the debris is before a step that may reach a time, for talus_get_debris_at().
+void keep_before(talus_simulation& simulation) {
+    const talus::sim::State& state = simulation.scenario->state();
+    if (!simulation.before) simulation.before.emplace();
+    talus::embed::Before& before = *simulation.before;
+    before.step = state.step;
+    before.time = state.time;
+    before.of_id.assign(state.seeded, {});
+    for (std::uint32_t i = 0; i < state.count; ++i) {
+        before.of_id[state.id[i]] = {state.position.at(i), state.velocity.at(i), true};
+    }
 }
 
 Status open_scene(talus::scene::Scene loaded, std::vector<std::string> settings, bool can_be_saved, Watch& watch,
@@ -111,7 +136,7 @@ Result<std::string> read_file(const char* path) {
     return text;
 }
 
-/// `share`: of the work that is done. `another`: whether a step is to be taken.
+/// `share`: of the work that is done. `another`: whether a step is to be taken, and what is to be done before it.
 template <class Share, class Another>
 int take_steps(talus_simulation* simulation, const talus_progress* progress, talus_error* error, const Share& share,
                const Another& another) {
@@ -127,6 +152,10 @@ int take_steps(talus_simulation* simulation, const talus_progress* progress, tal
                 if (!watch.go_on(share(scenario))) return {};
                 simulation->answers = {};
                 scenario.advance();
+                const auto phase = scenario.phase();
+                if (phase == talus::run::RunPhase::at_rest || phase == talus::run::RunPhase::ended) {
+                    tell(TALUS_LOG_INFO, fmt::format("t = {:.4g} s: {}", scenario.time(), scenario.message()));
+                }
             }
             fault = scenario.phase() == talus::run::RunPhase::fault;
             if (fault) return Error{scenario.message()};
@@ -135,6 +164,11 @@ int take_steps(talus_simulation* simulation, const talus_progress* progress, tal
         &watch);
     if (fault && code == TALUS_BAD_INPUT && error != nullptr) error->code = TALUS_FAULT;
     return fault && code == TALUS_BAD_INPUT ? TALUS_FAULT : code;
+}
+
+void note_change(talus_simulation& simulation, const talus::twin::Done& done) {
+    simulation.before.reset();
+    tell(TALUS_LOG_INFO, fmt::format("t = {:.4g} s: {}", simulation.scenario->time(), done.sentence));
 }
 
 /// What both ways to take steps need.
@@ -225,7 +259,11 @@ int talus_advance(talus_simulation* simulation, double time, const talus_progres
                  end = std::min(time, simulation->scenario->model().solver.end_time);
     return take_steps(
         simulation, progress, error, [&](const Scenario& s) { return (s.time() - start) / (end - start); },
-        [&](const Scenario& s) { return s.time() < time; });
+        [&](const Scenario& s) {
+            if (!(s.time() < time)) return false;
+            if (s.time() + longest_step(s) >= time) keep_before(*simulation);
+            return true;
+        });
 }
 
 int talus_set(talus_simulation* simulation, const char* key, double value, talus_error* error) {
@@ -234,8 +272,10 @@ int talus_set(talus_simulation* simulation, const char* key, double value, talus
         TALUS_TRY(need(key, "key"));
         if (!std::isfinite(value)) return Error{fmt::format("{} = {}: must be a finite number", key, value)};
         const Changing changing(*simulation);
-        TALUS_TRY(
+        TALUS_ASSIGN(
+            const talus::twin::Done done,
             simulation->scenario->apply({{"action", "set_parameter"}, {"key", key}, {"value", value}}, "talus.h"));
+        note_change(*simulation, done);
         return {};
     });
 }
@@ -248,6 +288,7 @@ int talus_apply(talus_simulation* simulation, const char* action, const char** c
         if (!parsed) return Error{"action: " + parsed.error().message};
         const Changing changing(*simulation);
         TALUS_ASSIGN(talus::twin::Done done, simulation->scenario->apply(*parsed, "talus.h"));
+        note_change(*simulation, done);
         simulation->answers.created = std::move(done.created);
         if (created != nullptr) *created = simulation->answers.created.c_str();
         return {};

@@ -7,7 +7,7 @@
  *
  * Errors: a function that can fail returns a code, and writes a sentence into `error` unless that is NULL. Nothing is
  * changed by a call that fails. NULL where a pointer is needed is TALUS_BAD_INPUT. No exception leaves the library, and
- * it keeps no state outside a simulation.
+ * it keeps no state outside a simulation, but for the two hooks, talus_set_log() and talus_set_allocator().
  *
  * Threads: a simulation is used by one thread at a time; several simulations can be used at once. A step computes on
  * the threads of solver.thread_count (default: all cores); results do not depend on their number.
@@ -32,7 +32,14 @@
 #define TALUS_VERSION_MINOR 1
 #define TALUS_VERSION_PATCH 0
 
-#if defined(__GNUC__)
+/* TALUS_BUILDING: in the library itself. TALUS_STATIC: in it, and in a program that it is linked into. */
+#if defined(_WIN32) && !defined(TALUS_STATIC)
+#ifdef TALUS_BUILDING
+#define TALUS_API __declspec(dllexport)
+#else
+#define TALUS_API __declspec(dllimport)
+#endif
+#elif defined(__GNUC__) && !defined(_WIN32)
 #define TALUS_API __attribute__((visibility("default")))
 #else
 #define TALUS_API
@@ -69,6 +76,43 @@ typedef struct talus_error {
 
 /* "0.1.0" */
 TALUS_API const char* talus_version(void);
+
+enum {
+    TALUS_LOG_INFO = 0,    /* opened, changed, at rest, ended, cancelled, saved */
+    TALUS_LOG_WARNING = 1, /* what was assumed about the inputs of a scene, or done to them */
+    TALUS_LOG_ERROR = 2    /* the sentence of every call that fails */
+};
+
+/*
+ * Where the library tells what it does: `write` is called on the thread of the call that it is about, by several
+ * threads at once where several call. `sentence` is valid within it. It may call functions that read.
+ */
+typedef struct talus_log {
+    size_t size;
+    void (*write)(void* user, int level, const char* sentence);
+    void* user;
+    int32_t least_level; /* nothing below it is told */
+} talus_log;
+
+/* For the whole program, from now on. NULL: no log, as at the start. */
+TALUS_API int talus_set_log(const talus_log* log, talus_error* error);
+
+/*
+ * Memory for the arrays that the library makes to hand them out: those of talus_get_map(), talus_get_map_on(),
+ * talus_get_front(), talus_get_debris_at() and talus_get_surface(). The solver's own memory, which talus_get_debris()
+ * shows, and texts are C++'s. `allocate`: NULL means that there is none left. `release` gets what `allocate` was asked
+ * for; a block goes back to the allocator it came from, so `user` must last until all simulations are closed. Both are
+ * called by any thread that calls the library.
+ */
+typedef struct talus_allocator {
+    size_t size;
+    void* (*allocate)(void* user, size_t bytes, size_t alignment);
+    void (*release)(void* user, void* block, size_t bytes, size_t alignment);
+    void* user;
+} talus_allocator;
+
+/* For the whole program, for arrays that are made from now on. NULL: that of C++, as at the start. */
+TALUS_API int talus_set_allocator(const talus_allocator* allocator, talus_error* error);
 
 /*
  * What long calls tell, and whether they go on: `call` is called on the caller's thread, at most every 20 ms, with the
@@ -136,7 +180,9 @@ TALUS_API void talus_close(talus_simulation* simulation);
 TALUS_API int talus_step(talus_simulation* simulation, uint64_t steps, const talus_progress* progress,
                          talus_error* error);
 
-/* Takes steps until `time`, s, is reached or the run is over. `time`: a number, 0 or more; INFINITY: until it is over.
+/*
+ * Takes steps until `time`, s, is reached or the run is over. `time`: a number, 0 or more; INFINITY: until it is over.
+ * The last step is not cut short: results do not depend on when somebody looks. See talus_get_debris_at().
  */
 TALUS_API int talus_advance(talus_simulation* simulation, double time, const talus_progress* progress,
                             talus_error* error);
@@ -176,6 +222,16 @@ typedef struct talus_debris {
 
 TALUS_API int talus_get_debris(const talus_simulation* simulation, talus_debris* debris, talus_error* error);
 
+/*
+ * The debris at exactly `time`, s, in the last step of talus_advance() to this or an earlier time: `time` is at or
+ * before talus_state's, and at or after that before the step. Positions and velocities lie on straight lines between
+ * the two; particles that came in with the step are moved back along their velocity. If the run is over, also later:
+ * debris as it lies. Changes nothing: results are those of steps alone. talus_step() and changes forget what was
+ * before.
+ */
+TALUS_API int talus_get_debris_at(const talus_simulation* simulation, double time, talus_debris* debris,
+                                  talus_error* error);
+
 typedef struct talus_map {
     size_t size;
     talus_grid grid;
@@ -183,10 +239,47 @@ typedef struct talus_map {
 } talus_map;
 
 /*
- * "depth" (m, now), "peak_depth" (m), "peak_speed" (m/s), "peak_pressure" (Pa, density times speed squared),
- * "arrival_time" (s), "deposit_depth" (m), "erosion_depth" (m).
+ * "depth" (m, now), "speed" (m/s, now, averaged over the depth; 0 where debris is too thin to have one), "peak_depth"
+ * (m), "peak_speed" (m/s), "peak_pressure" (Pa, density times speed squared), "arrival_time" (s), "deposit_depth" (m),
+ * "erosion_depth" (m). Its extent follows the debris.
  */
 TALUS_API int talus_get_map(const talus_simulation* simulation, const char* name, talus_map* map, talus_error* error);
+
+/*
+ * The same on cells of the caller's, always as many: 1 to 1048576 columns and rows, at most 400 million cells. A cell
+ * that holds centres of the map's cells (outputs.map_cell_m) has the mean of their depths, the largest of their peaks
+ * and speeds, or their first arrival; a smaller one has the value of the map's cell that its centre lies in.
+ */
+TALUS_API int talus_get_map_on(const talus_simulation* simulation, const char* name, const talus_grid* grid,
+                               talus_map* map, talus_error* error);
+
+/* Elevation of the ground now, m, as entrainment has left it, at a world plan position. Refuses one off the terrain. */
+TALUS_API int talus_get_elevation(const talus_simulation* simulation, double x, double y, double* elevation,
+                                  talus_error* error);
+
+/*
+ * The same at `count` positions at once, x before y, into `elevations` of the caller's: NaN off the terrain. At most a
+ * hundred million.
+ */
+TALUS_API int talus_get_elevations(const talus_simulation* simulation, const double* x_y, size_t count,
+                                   double* elevations, talus_error* error);
+
+/*
+ * The surface of the debris now: a vertex at the centre of each map cell with debris and of those around, where it
+ * meets the ground. Triangles are counterclockwise from above.
+ */
+typedef struct talus_surface {
+    size_t size;
+    size_t vertex_count;
+    const float* positions; /* m, local, x y z of each vertex */
+    const float* normals;   /* unit, likewise */
+    const float* depth;     /* m, one per vertex; 0 where it meets the ground */
+    const float* speed;     /* m/s, one per vertex */
+    size_t index_count;
+    const uint32_t* indices; /* three vertices of each triangle */
+} talus_surface;
+
+TALUS_API int talus_get_surface(const talus_simulation* simulation, talus_surface* surface, talus_error* error);
 
 /* The front along the flow path: `count` chainages that it has passed. NaN: no value. */
 typedef struct talus_front {
@@ -244,6 +337,23 @@ TALUS_API int talus_write_results(const talus_simulation* simulation, const char
 TALUS_API int talus_save(const talus_simulation* simulation, const char* file, talus_error* error);
 TALUS_API int talus_open_saved(const char* file, const talus_progress* progress, talus_simulation** simulation,
                                talus_error* error);
+
+/*
+ * A second simulation in the present state of the first, with all that was measured: in the time that copying its
+ * memory takes. Both go on by themselves, to the same bits until one is changed; each is closed.
+ */
+TALUS_API int talus_fork(const talus_simulation* simulation, talus_simulation** fork, talus_error* error);
+
+/* The state of a simulation, kept in memory. Used by one thread at a time; it may outlast the simulation. */
+typedef struct talus_snapshot talus_snapshot;
+
+TALUS_API int talus_take_snapshot(const talus_simulation* simulation, talus_snapshot** snapshot, talus_error* error);
+
+/* Brings a simulation, or a fork of it, back to a snapshot: as often as wanted, also forwards. */
+TALUS_API int talus_restore(talus_simulation* simulation, const talus_snapshot* snapshot, talus_error* error);
+
+/* Frees a snapshot. NULL: does nothing, as free(). */
+TALUS_API void talus_drop_snapshot(talus_snapshot* snapshot);
 
 #ifdef __cplusplus
 }

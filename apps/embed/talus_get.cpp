@@ -111,23 +111,6 @@ int talus_get_debris(const talus_simulation* simulation, talus_debris* debris, t
     });
 }
 
-int talus_get_map(const talus_simulation* simulation, const char* name, talus_map* map, talus_error* error) {
-    return guarded(error, [&]() -> Status {
-        TALUS_TRY(need(simulation, "simulation"));
-        TALUS_TRY(need(name, "name"));
-        TALUS_TRY(check_size(map, "map"));
-        auto& maps = simulation->answers.maps;
-        auto found = maps.find(name);
-        if (found == maps.end()) {
-            TALUS_ASSIGN(const auto layer, simulation->scenario->layer(name));
-            found = maps.emplace(name, layer()).first;
-        }
-        const talus::GridGeometry& g = found->second.geometry;
-        give<talus_map>({0, {g.x_min, g.y_min, g.cell, g.columns, g.rows}, found->second.values.data()}, map);
-        return {};
-    });
-}
-
 int talus_get_front(const talus_simulation* simulation, talus_front* front, talus_error* error) {
     return guarded(error, [&]() -> Status {
         TALUS_TRY(need(simulation, "simulation"));
@@ -187,6 +170,7 @@ int talus_write_results(const talus_simulation* simulation, const char* folder, 
         const bool made = fs::create_directories(path, problem);
         if (problem) return Error{fmt::format("{}: cannot be created: {}", path.string(), problem.message())};
         Status written = simulation->scenario->products()(path);
+        if (written) talus::embed::tell(TALUS_LOG_INFO, fmt::format("results written into {}", path.string()));
         if (!written) {
             for (const auto& entry : fs::directory_iterator(path, problem)) fs::remove_all(entry, problem);
             if (made) fs::remove(path, problem);
@@ -203,7 +187,9 @@ int talus_save(const talus_simulation* simulation, const char* file, talus_error
             return Error{"a simulation from arrays can be saved if it was opened with a folder of its own"};
         }
         TALUS_TRY(talus::check_input_file(file));
-        return talus::products::replace_text_file(file, simulation->scenario->journal_json().dump());
+        TALUS_TRY(talus::products::replace_text_file(file, simulation->scenario->journal_json().dump()));
+        talus::embed::tell(TALUS_LOG_INFO, fmt::format("saved in {}", file));
+        return {};
     });
 }
 

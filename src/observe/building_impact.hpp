@@ -1,9 +1,9 @@
 #pragma once
 
 #include <cstdint>
-#include <memory>
 #include <vector>
 
+#include "core/copied.hpp"
 #include "observe/debris.hpp"
 #include "observe/moving_sums.hpp"
 #include "observe/observation.hpp"
@@ -89,10 +89,10 @@ class ImpactRecorder {
     std::vector<std::uint32_t> slot_building_;  // the building of each slot
     std::vector<BuildingImpact> impacts_;
     std::vector<Record> records_;
-    std::vector<std::size_t> touched_;                     // buildings of this step
-    std::vector<std::size_t> failed_;                      // in this step
-    std::vector<std::unique_ptr<Overtopping>> crossings_;  // by building
-    bool jumped_ = false;                                  // particles were moved since the last step
+    std::vector<std::size_t> touched_;            // buildings of this step
+    std::vector<std::size_t> failed_;             // in this step
+    std::vector<Copied<Overtopping>> crossings_;  // by building
+    bool jumped_ = false;                         // particles were moved since the last step
 };
 
 }  // namespace talus::observe

@@ -5,6 +5,7 @@
 #include <cstring>
 #include <limits>
 #include <mutex>
+#include <unordered_map>
 
 #include "observe/map_units.hpp"
 #include "simd/lanes.hpp"
@@ -60,6 +61,32 @@ MapAccumulator::MapAccumulator(const sim::Model& model, const sim::Ground& groun
     tile_at_.assign(positions, nullptr);
     make_room(state.count);
     if (state.count > 0) first_particle_ = {origin.x + state.position.x[0], origin.y + state.position.y[0]};
+}
+
+MapAccumulator::MapAccumulator(const MapAccumulator& other)
+    : geometry_(other.geometry_),
+      inverse_cell_(other.inverse_cell_),
+      particle_volume_(other.particle_volume_),
+      frame_(other.frame_),
+      scale_(other.scale_),
+      tile_columns_(other.tile_columns_),
+      first_particle_(other.first_particle_) {
+    other.read_back();
+    adds_ = other.adds_;
+    active_count_ = other.active_count_;
+    active_.resize(other.active_.size(), nullptr);
+    tiles_.reserve(other.tiles_.capacity());
+    std::unordered_map<const Tile*, Tile*> copy_of;
+    for (const auto& tile : other.tiles_) {
+        Tile& made = *tiles_.emplace_back(std::make_unique<Tile>());
+        static_cast<TileValues&>(made) = *tile;
+        copy_of[tile.get()] = &made;
+    }
+    tile_at_.assign(other.tile_at_.size(), nullptr);
+    for (std::size_t position = 0; position < tile_at_.size(); ++position) {
+        if (const Tile* tile = other.tile_at_[position]) tile_at_[position] = copy_of[tile];
+    }
+    for (std::uint32_t t = 0; t < active_count_; ++t) active_[t] = copy_of[other.active_[t]];
 }
 
 /// The shares of the particles of a chunk and their cells.

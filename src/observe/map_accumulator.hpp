@@ -36,6 +36,11 @@ class MapAccumulator {
     MapAccumulator(const sim::Model& model, const sim::Ground& ground, const sim::State& state, double map_cell,
                    double arrival_depth);
 
+    /// A copy goes on by itself; on a device, with maps of its own.
+    explicit MapAccumulator(const MapAccumulator& other);
+    MapAccumulator& operator=(const MapAccumulator&) = delete;
+    ~MapAccumulator() = default;
+
     /// Call when model or state were changed between two steps. Peak pressures so far keep the previous density.
     void follow(const sim::Model& model, const sim::State& state);
     /// Reserves memory for this number of particles; call before their number exceeds its previous maximum.
@@ -84,9 +89,8 @@ class MapAccumulator {
         [[nodiscard]] double volume() const { return pair[0]; }  // 2^-24 of a particle
         [[nodiscard]] MapSum sum() const { return {pair[0], pair[1]}; }
     };
-    struct Tile {
+    struct TileValues {
         int column = 0, row = 0;  // of its first cell
-        tbb::spin_mutex adding;
         std::uint64_t added = 0;  // the add to which the sums belong
         std::array<CellSum, tile_cells> sums{};
         std::array<float, tile_cells> peak_depth{};     // 0: not reached
@@ -95,6 +99,9 @@ class MapAccumulator {
         std::array<float, tile_cells> arrival_speed{};  // depth-averaged
         std::array<float, tile_cells> peak_pressure{};  // Pa; only where the density has changed
         std::vector<float> density;                     // mean, kg/m3, by cell; empty: the rest density
+    };
+    struct Tile : TileValues {
+        tbb::spin_mutex adding;
     };
     struct Shares;
     struct Patch;

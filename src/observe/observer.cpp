@@ -49,6 +49,17 @@ TimeSample make_sample(const sim::Model& model, const Debris& debris, double dep
     return sample;
 }
 
+/// What reads the particles on a device. A copy of the observer reads those of its own run.
+struct OnDevice {
+    const sim::device::Backend* backend = nullptr;
+    std::unique_ptr<device::Particles> particles;
+
+    OnDevice() = default;
+    OnDevice(const OnDevice& /*of another run*/) {}
+    OnDevice& operator=(const OnDevice&) = delete;
+    ~OnDevice() = default;
+};
+
 }  // namespace
 
 struct Observer::Parts {
@@ -159,8 +170,7 @@ struct Observer::Parts {
     }
 
     params::OutputSpec outputs;
-    const sim::device::Backend* backend = nullptr;  ///< that `on_device` reads
-    std::unique_ptr<device::Particles> on_device;
+    OnDevice on_device;
     MapAccumulator maps;
     GaugeRecorder gauges;
     FrontTracker front;
@@ -185,6 +195,8 @@ Observer::Observer(const sim::Model& model, const sim::Ground& ground, const sim
     parts_->add_row(model, state);
 }
 
+Observer::Observer(const Observer& other) : StepWatcher(), parts_(std::make_unique<Parts>(*other.parts_)) {}
+
 Observer::~Observer() = default;
 
 void Observer::observe(const sim::Model& model, const sim::Ground& ground, const sim::State& state) {
@@ -194,12 +206,12 @@ void Observer::observe(const sim::Model& model, const sim::Ground& ground, const
 bool Observer::observe_on(sim::device::Backend& backend, const sim::Model& model, const sim::Ground& ground,
                           const sim::StateSummary& state) {
     Parts& p = *parts_;
-    if (p.backend != &backend) {
-        p.on_device = device::make_particles(backend);
-        p.backend = &backend;
+    if (p.on_device.backend != &backend) {
+        p.on_device.particles = device::make_particles(backend);
+        p.on_device.backend = &backend;
     }
-    if (!p.on_device) return false;
-    p.after_step(model, ground, Debris(*p.on_device, state), p.rate.update(state.step));
+    if (!p.on_device.particles) return false;
+    p.after_step(model, ground, Debris(*p.on_device.particles, state), p.rate.update(state.step));
     return true;
 }
 
@@ -219,7 +231,7 @@ void Observer::follow(const sim::Model& model, const sim::Ground& ground, const 
     p.maps.add(state);
     p.front.follow(state);
     p.impact.follow(model, ground, state);
-    if (p.on_device) p.on_device->forget_walls();
+    if (p.on_device.particles) p.on_device.particles->forget_walls();
 }
 
 void Observer::follow_inflow(const sim::Model& model, const sim::Ground& ground, const sim::State& state,

@@ -24,6 +24,9 @@ class Observer final : public sim::StepWatcher {
     /// `flow_path` may be empty: then there is no front against chainage. `map_cell` in m.
     Observer(const sim::Model& model, const sim::Ground& ground, const sim::State& state,
              const terrain::FlowPath& flow_path, const params::OutputSpec& outputs, double map_cell);
+    /// A copy goes on by itself, with a copy of what is observed. It costs what the memory does.
+    explicit Observer(const Observer& other);
+    Observer& operator=(const Observer&) = delete;
     ~Observer() override;
 
     /// As a stage of a step: after_step() with the steps per second of wall time.

@@ -11,8 +11,8 @@
 namespace talus::products {
 namespace {
 
-constexpr float thinnest = 0.01F;  // m; thinner debris is not drawn
-constexpr float lift = 0.05F;      // m, above the debris' surface: as deep, it would flicker with the ground
+constexpr float thinnest = 0.01F;      // m; thinner debris is not drawn
+constexpr float picture_lift = 0.05F;  // m, above the debris' surface: as deep, it would flicker with the ground
 constexpr double margin_share = 0.25;
 constexpr int least_margin = 20;  // cells
 constexpr std::uint32_t none = std::numeric_limits<std::uint32_t>::max();
@@ -126,13 +126,13 @@ void DebrisSurface::lay_lattice(const GridGeometry& cells, int factor) {
     }
 }
 
-LocalPoint DebrisSurface::point(int column, int row, float above) const {
-    const PlanPoint p = ground_.geometry.centre(column, row);
-    const WorldPoint& origin = terrain_.frame().origin;
-    return {static_cast<float>(p.x - origin.x), static_cast<float>(p.y - origin.y), ground_.at(column, row) + above};
-}
-
 namespace {
+
+LocalPoint point_on(const LocalFrame& frame, const Grid<float>& ground, int column, int row, float above) {
+    const PlanPoint p = ground.geometry.centre(column, row);
+    return {static_cast<float>(p.x - frame.origin.x), static_cast<float>(p.y - frame.origin.y),
+            ground.at(column, row) + above};
+}
 
 /// Gives every point of a lattice that a triangle uses its place in a mesh; `add` adds it.
 template <class Wanted, class Add>
@@ -169,7 +169,7 @@ TriangleMesh DebrisSurface::ground() const {
         return std::isfinite(ground_.at(t[0], t[1]) + ground_.at(t[2], t[3]) + ground_.at(t[4], t[5]));
     };
     mesh.corners = triangles_of(ground_.geometry, known, [&](int column, int row) {
-        mesh.points.push_back(point(column, row, 0));
+        mesh.points.push_back(point_on(terrain_.frame(), ground_, column, row, 0));
         mesh.normals.push_back(normal_at(ground_, column, row));
     });
     return mesh;
@@ -201,16 +201,21 @@ Status DebrisSurface::read(std::size_t frame, Grid<float>& depth, Grid<float>& s
 Result<DebrisMesh> DebrisSurface::debris(std::size_t frame) const {
     Grid<float> depth, speed;
     TALUS_TRY(read(frame, depth, speed));
-    Grid<float> surface = ground_;
+    return mesh_debris(terrain_.frame(), ground_, depth, speed, picture_lift);
+}
+
+DebrisMesh mesh_debris(const LocalFrame& frame, const Grid<float>& ground, const Grid<float>& depth,
+                       const Grid<float>& speed, float lift) {
+    Grid<float> surface = ground;
     for (std::size_t i = 0; i < surface.values.size(); ++i) surface.values[i] += depth.values[i];
     DebrisMesh mesh;
     const auto wet = [&](const std::array<int, 6>& t) {
         return depth.at(t[0], t[1]) + depth.at(t[2], t[3]) + depth.at(t[4], t[5]) > 0 &&
                std::isfinite(surface.at(t[0], t[1]) + surface.at(t[2], t[3]) + surface.at(t[4], t[5]));
     };
-    mesh.corners = triangles_of(ground_.geometry, wet, [&](int column, int row) {
+    mesh.corners = triangles_of(ground.geometry, wet, [&](int column, int row) {
         const float deep = depth.at(column, row);
-        mesh.points.push_back(point(column, row, deep > 0 ? deep + lift : 0));
+        mesh.points.push_back(point_on(frame, ground, column, row, deep > 0 ? deep + lift : 0));
         mesh.normals.push_back(normal_at(surface, column, row));
         mesh.depth.push_back(deep);
         mesh.speed.push_back(speed.at(column, row));

@@ -16,6 +16,12 @@ struct DebrisMesh : TriangleMesh {
     std::vector<float> depth, speed;  ///< m, m/s
 };
 
+/// The surface of debris over a lattice of points; around it, where debris is next to none, it meets the ground.
+/// `ground`: local z in `frame`, NaN: not known. `depth`, `speed` on the same lattice; 0: none. `lift`: above all
+/// debris, m, for pictures.
+[[nodiscard]] DebrisMesh mesh_debris(const LocalFrame& frame, const Grid<float>& ground, const Grid<float>& depth,
+                                     const Grid<float>& speed, float lift);
+
 /// Ground and debris over time as surfaces with common points, so that ground never shows through debris: a lattice on
 /// the ground around all that debris reached, whose cells are those of the maps or a multiple of them.
 class DebrisSurface {
@@ -42,7 +48,6 @@ class DebrisSurface {
     void lay_lattice(const GridGeometry& cells, int factor);
     /// Mean depth over the cells of every point, and the speed of what is there.
     [[nodiscard]] Status read(std::size_t frame, Grid<float>& depth, Grid<float>& speed) const;
-    [[nodiscard]] LocalPoint point(int column, int row, float above) const;
 
     const terrain::Terrain& terrain_;
     const SeriesFrames& frames_;

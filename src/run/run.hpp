@@ -42,6 +42,11 @@ class Run {
     /// With the threads of `start.model.solver`.
     explicit Run(RunStart start);
 
+    /// A copy that goes on by itself, to the same bits.
+    explicit Run(const Run& other) = default;
+    Run& operator=(const Run&) = delete;
+    ~Run() = default;
+
     /// A run of a loaded scene, with its releases seeded; of all of it: a zoom is for run_scene(). `particle_spacing`,
     /// m: absent, the scene's own. Errors: a release smaller than a particle, more particles than
     /// solver.particle_limit, including those of inflows; `progress` ended it.

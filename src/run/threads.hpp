@@ -14,6 +14,12 @@ class Threads {
   public:
     /// As many as the processor has for a `wanted` of 0.
     explicit Threads(int wanted = 0);
+    /// As many others.
+    Threads(const Threads& other) : Threads(other.count_) {}
+    Threads& operator=(const Threads&) = delete;
+    Threads(Threads&&) noexcept = default;
+    Threads& operator=(Threads&&) noexcept = default;
+    ~Threads() = default;
 
     [[nodiscard]] int count() const { return count_; }
     /// Executes the work on these threads, including the caller's, and returns its result.

@@ -58,17 +58,31 @@ Simulation::Simulation(Model model, Ground ground, State state, InflowFeeder inf
       backend_(settled_backend(model_.solver.backend, capacity_)),
       highest_energy_head_(std::numeric_limits<double>::lowest()) {
     if (expected_ > 0) state_.resize(capacity_);
-    switch (backend_) {
-        case params::BackendChoice::cuda:
-            device_ = device::make_cuda_backend();
-            break;
-        case params::BackendChoice::host:
-            device_ = device::make_host_backend();
-            break;
-        default:
-            processor_.emplace(model_, capacity_);
-    }
+    make_device();
+    if (device_ == nullptr) processor_.emplace(model_, capacity_);
     measure_energy_and_speed();
+}
+
+/// If the backend is one.
+void Simulation::make_device() {
+    if (backend_ == params::BackendChoice::cuda) device_ = device::make_cuda_backend();
+    if (backend_ == params::BackendChoice::host) device_ = device::make_host_backend();
+}
+
+Simulation::Simulation(const Simulation& other)
+    : model_(other.model_),
+      ground_(other.ground_),
+      state_(other.state()),
+      kept_(other.kept_on_device_ ? state_ : other.kept_),
+      inflow_(other.inflow_),
+      expected_(other.expected_),
+      capacity_(other.capacity_),
+      backend_(other.backend_),
+      entrainment_(other.entrainment_),
+      times_(other.times_),
+      highest_energy_head_(other.highest_energy_head_) {
+    make_device();
+    state_.building_contacts.reserve(other.state_.building_contacts.capacity());
 }
 
 std::unique_lock<std::mutex> Simulation::lock_device() const {
@@ -117,12 +131,15 @@ Motion Simulation::motion(double deposited_speed) const {
 }
 
 std::string Simulation::instruction_set() const {
-    return device_ != nullptr ? device_->name() : std::string(processor_->instruction_set());
+    if (device_ != nullptr) return device_->name();
+    return std::string(processor_ ? processor_->instruction_set()
+                                  : cpu::particle_stages_for(model_.solver.kernel).instruction_set);
 }
 
 double Simulation::mean_neighbours() const {
     const auto lock = lock_device();
     if (device_ != nullptr) return device_->mean_neighbours();
+    if (!processor_) return 0;
     double pairs = 0;
     for (std::uint32_t i = 0; i < state_.count; ++i) pairs += processor_->neighbours().count_of(i);
     return state_.count > 0 ? pairs / state_.count : 0;
@@ -149,7 +166,10 @@ void Simulation::measure_energy_and_speed() {
 
 Status Simulation::advance(StepWatcher* watcher) {
     const StepHooks own{*this, watcher};
-    if (device_ == nullptr) return step(*processor_, model_, ground_, state_, times_, own);
+    if (device_ == nullptr) {
+        if (!processor_) processor_.emplace(model_, capacity_);
+        return step(*processor_, model_, ground_, state_, times_, own);
+    }
     try {
         return step(*device_, model_, ground_, state_, times_, own);
     } catch (const device::DeviceFailure& failure) {

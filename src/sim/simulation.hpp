@@ -28,6 +28,12 @@ class Simulation {
     /// usable (see check_backend()).
     Simulation(Model model, Ground ground, State state, InflowFeeder inflow = {});
 
+    /// A copy that goes on by itself, to the same bits. It costs what the memory of the particles does: what a step
+    /// works with is made by its first one.
+    explicit Simulation(const Simulation& other);
+    Simulation& operator=(const Simulation&) = delete;
+    ~Simulation() = default;
+
     /// Takes one step, calling `watcher` if there is one. Returns why the step cannot be trusted, if it cannot; the
     /// state is then that after the step.
     Status advance(StepWatcher* watcher = nullptr);
@@ -83,6 +89,7 @@ class Simulation {
     void hand_over();
     /// Whether the device has the particles as they are now, and will have them after the next step.
     [[nodiscard]] bool on_device() const { return device_ != nullptr && !device_is_older_ && ground_.bed.empty(); }
+    void make_device();
     void measure_energy_and_speed();
     void make_room(std::uint32_t count);
     [[nodiscard]] Status entrain_bed();
@@ -99,8 +106,8 @@ class Simulation {
     std::uint32_t expected_ = 0;  // total number of particles from inflows
     std::uint32_t capacity_ = 0;  // particles that the backend has memory for
     params::BackendChoice backend_;
-    std::optional<cpu::Backend> processor_;                                     // replaced when there are more
-    std::unique_ptr<device::Backend> device_;                                   // in place of the processor
+    std::optional<cpu::Backend> processor_;    // replaced when there are more; of a copy, from its first step on
+    std::unique_ptr<device::Backend> device_;  // in place of the processor
     std::unique_ptr<std::mutex> device_lock_ = std::make_unique<std::mutex>();  // can be moved with this
     Entrainment entrainment_;
     StageTimes times_;

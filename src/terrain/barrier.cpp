@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include <fmt/format.h>
 
@@ -41,7 +42,7 @@ Result<std::vector<PlanPoint>> find_mitres(const std::vector<PlanPoint>& line, d
     std::vector<PlanPoint> mitres;
     for (std::size_t k = 0; k < line.size(); ++k) {
         const PlanPoint before = normals[k == 0 ? 0 : k - 1], after = normals[std::min(k, normals.size() - 1)];
-        const double turn = std::atan2(std::abs(cross(before, after)), dot(before, after)) * 180 / M_PI;
+        const double turn = std::atan2(std::abs(cross(before, after)), dot(before, after)) * 180 / std::numbers::pi;
         if (turn > sharpest_turn) {
             return Error{fmt::format("line: turns by {:.0f} degrees at point {}; it must be at most {:.0f}", turn,
                                      k + 1, sharpest_turn)};

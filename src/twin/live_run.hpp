@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "core/copied.hpp"
 #include "core/result.hpp"
 #include "run/forecast.hpp"
 #include "run/run.hpp"
@@ -27,6 +28,11 @@ class LiveRun {
     [[nodiscard]] static Result<std::unique_ptr<LiveRun>> start(const scene::Scene& scene, const Setup& setup,
                                                                 double spacing, const ScenarioOptions& options,
                                                                 const sim::Progress& progress = {});
+
+    /// A copy that goes on by itself, to the same bits.
+    explicit LiveRun(const LiveRun& other) = default;
+    LiveRun& operator=(const LiveRun&) = delete;
+    ~LiveRun() = default;
 
     /// Takes a step if ready.
     void advance();
@@ -126,7 +132,7 @@ class LiveRun {
     void record_impacts();
     [[nodiscard]] observe::BuildingImpact impact_now(std::size_t obstacle) const;
 
-    std::unique_ptr<run::Run> run_;
+    Copied<run::Run> run_;
     Setup begun_with_, setup_;
     std::vector<Group> groups_;
     std::vector<Obstacle> obstacles_;

@@ -131,6 +131,10 @@ Result<std::unique_ptr<Scenario>> Scenario::open_at(const Journal& journal, std:
     return std::unique_ptr<Scenario>(new Scenario(std::move(parts)));
 }
 
+std::unique_ptr<Scenario> Scenario::fork() const {
+    return std::unique_ptr<Scenario>(new Scenario(std::make_unique<Parts>(*parts_)));
+}
+
 std::function<Result<std::unique_ptr<Scenario>>(const sim::Progress&)> Scenario::copying() const {
     auto parts = std::make_shared<std::unique_ptr<Parts>>(std::make_unique<Parts>(parts_->scene, parts_->options));
     (*parts)->next = parts_->next;
@@ -332,6 +336,9 @@ const scene::Scene& Scenario::scene() const {
 }
 const sim::Model& Scenario::model() const {
     return parts_->run->model();
+}
+const sim::Ground& Scenario::ground() const {
+    return parts_->run->ground();
 }
 const sim::State& Scenario::state() const {
     return parts_->run->state();

@@ -63,6 +63,9 @@ class Scenario {
     [[nodiscard]] static Result<std::unique_ptr<Scenario>> open_at(const Journal& journal,
                                                                    std::shared_ptr<const scene::Scene> scene,
                                                                    ScenarioOptions options);
+    /// This one as it is now, to go on by itself: to the same bits, with the same journal, until they are changed. In
+    /// the time that copying its memory takes.
+    [[nodiscard]] std::unique_ptr<Scenario> fork() const;
     /// The same scene and the setup of this one as it is now, at time 0, with what can be undone and redone.
     [[nodiscard]] Result<std::unique_ptr<Scenario>> copy() const { return copying()({}); }
     /// The work of that, for any thread, while this scenario continues.
@@ -97,6 +100,7 @@ class Scenario {
     [[nodiscard]] std::uint64_t revision() const;  ///< grows with every change of the setup
     [[nodiscard]] const scene::Scene& scene() const;
     [[nodiscard]] const sim::Model& model() const;
+    [[nodiscard]] const sim::Ground& ground() const;  ///< as entrainment has left it
     [[nodiscard]] const sim::State& state() const;
     [[nodiscard]] const observe::Observer& observer() const;
 

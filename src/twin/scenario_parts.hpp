@@ -5,6 +5,7 @@
 #include <utility>
 #include <vector>
 
+#include "core/copied.hpp"
 #include "twin/action.hpp"
 #include "twin/journal.hpp"
 #include "twin/live_run.hpp"
@@ -47,7 +48,7 @@ struct Scenario::Parts {
     std::shared_ptr<const scene::Scene> scene;
     ScenarioOptions options;
     double particle_spacing = 0;
-    std::unique_ptr<LiveRun> run;
+    Copied<LiveRun> run;
     std::vector<Past> undo, redo;
     NextNumbers next;
     std::uint64_t revision = 0;  ///< of the setup

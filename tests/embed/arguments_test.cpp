@@ -20,6 +20,11 @@ TEST(Library, refuses_NULL_everywhere_with_one_code) {
     talus_front front = TALUS_SIZED(talus_front);
     talus_structure structure = TALUS_SIZED(talus_structure);
     const talus_progress no_call = TALUS_SIZED(talus_progress);
+    talus_surface surface = TALUS_SIZED(talus_surface);
+    const talus_grid grid{0, 0, 1, 10, 10};
+    const double place[] = {10, 10};
+    double height = 0;
+    talus_snapshot* snapshot = nullptr;
     const char* text = nullptr;
     std::uint64_t hash = 0;
     talus_error e = TALUS_SIZED(talus_error);
@@ -46,6 +51,25 @@ TEST(Library, refuses_NULL_everywhere_with_one_code) {
     refused(talus_get_map(nullptr, "depth", &map, &e), "simulation");
     refused(talus_get_map(simulation, nullptr, &map, &e), "name");
     refused(talus_get_map(simulation, "depth", nullptr, &e), "map");
+    refused(talus_get_map_on(nullptr, "depth", &grid, &map, &e), "simulation");
+    refused(talus_get_map_on(simulation, nullptr, &grid, &map, &e), "name");
+    refused(talus_get_map_on(simulation, "depth", nullptr, &map, &e), "grid");
+    refused(talus_get_map_on(simulation, "depth", &grid, nullptr, &e), "map");
+    refused(talus_get_debris_at(nullptr, 0, &debris, &e), "simulation");
+    refused(talus_get_debris_at(simulation, 0, nullptr, &e), "debris");
+    refused(talus_get_elevation(nullptr, 1, 1, &height, &e), "simulation");
+    refused(talus_get_elevation(simulation, 1, 1, nullptr, &e), "elevation");
+    refused(talus_get_elevations(nullptr, place, 1, &height, &e), "simulation");
+    refused(talus_get_elevations(simulation, nullptr, 1, &height, &e), "x_y");
+    refused(talus_get_elevations(simulation, place, 1, nullptr, &e), "elevations");
+    refused(talus_get_surface(nullptr, &surface, &e), "simulation");
+    refused(talus_get_surface(simulation, nullptr, &e), "surface");
+    refused(talus_fork(nullptr, &made, &e), "simulation");
+    refused(talus_fork(simulation, nullptr, &e), "fork");
+    refused(talus_take_snapshot(nullptr, &snapshot, &e), "simulation");
+    refused(talus_take_snapshot(simulation, nullptr, &e), "snapshot");
+    refused(talus_restore(nullptr, snapshot, &e), "simulation");
+    refused(talus_restore(simulation, nullptr, &e), "snapshot");
     refused(talus_get_front(nullptr, &front, &e), "simulation");
     refused(talus_get_front(simulation, nullptr, &e), "front");
     refused(talus_get_structure(nullptr, 0, &structure, &e), "simulation");
@@ -62,7 +86,9 @@ TEST(Library, refuses_NULL_everywhere_with_one_code) {
     refused(talus_save(nullptr, "/tmp/saved.json", &e), "simulation");
     refused(talus_save(simulation, nullptr, &e), "file");
     EXPECT_EQ(made, nullptr);
+    EXPECT_EQ(snapshot, nullptr);
     talus_close(nullptr);
+    talus_drop_snapshot(nullptr);
 }
 
 TEST(Library, refuses_a_struct_that_does_not_say_its_size) {

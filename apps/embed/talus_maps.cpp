@@ -1,0 +1,168 @@
+// The functions of talus.h that read maps.
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "call.hpp"
+#include "core/grid.hpp"
+#include "core/try.hpp"
+#include "grid_geometry.hpp"
+#include "handle.hpp"
+#include "talus.h"
+
+namespace {
+
+using talus::Error;
+using talus::Grid;
+using talus::GridGeometry;
+using talus::Result;
+using talus::Status;
+using talus::embed::Answers;
+using talus::embed::buffer_of;
+using talus::embed::check_size;
+using talus::embed::give;
+using talus::embed::guarded;
+using talus::embed::need;
+using talus::twin::Scenario;
+
+constexpr float no_value = std::numeric_limits<float>::quiet_NaN();
+
+/// How the values of several cells become one: depths keep their volume, peaks and arrivals stay on the safe side.
+enum class Several { mean, largest, smallest };
+
+struct Layer {
+    const char* name;
+    Several several;
+};
+constexpr std::array layers{Layer{"depth", Several::mean},
+                            Layer{"speed", Several::largest},
+                            Layer{"peak_depth", Several::largest},
+                            Layer{"peak_speed", Several::largest},
+                            Layer{"peak_pressure", Several::largest},
+                            Layer{"arrival_time", Several::smallest},
+                            Layer{"deposit_depth", Several::mean},
+                            Layer{"erosion_depth", Several::mean}};
+
+Result<Layer> layer_named(const std::string& name) {
+    std::vector<std::string> names;
+    for (const Layer& layer : layers) {
+        if (name == layer.name) return layer;
+        names.emplace_back(layer.name);
+    }
+    return Error{fmt::format("name = \"{}\": must be one of {}", name, fmt::join(names, ", "))};
+}
+
+/// Where there is debris.
+Grid<float> present_speed(const Scenario& scenario) {
+    auto present = scenario.observer().maps().present();
+    for (std::size_t k = 0; k < present.speed.values.size(); ++k) {
+        if (present.depth.values[k] == 0) present.speed.values[k] = no_value;
+    }
+    return std::move(present.speed);
+}
+
+Result<Grid<float>> read_layer(const Scenario& scenario, const Layer& layer) {
+    if (layer.name == std::string("speed")) return present_speed(scenario);
+    TALUS_ASSIGN(const auto read, scenario.layer(layer.name));
+    return read();
+}
+
+/// The cell of `to` that a place lies in; false: none.
+bool cell_at(const GridGeometry& to, const talus::PlanPoint& p, std::size_t& cell) {
+    const double column = std::floor((p.x - to.x_min) / to.cell), row = std::floor((p.y - to.y_min) / to.cell);
+    if (!(column >= 0 && row >= 0 && column < to.columns && row < to.rows)) return false;
+    cell = to.index(static_cast<int>(column), static_cast<int>(row));
+    return true;
+}
+
+void add(float value, Several several, float& sum) {
+    if (std::isnan(value)) return;
+    if (std::isnan(sum)) {
+        sum = value;
+    } else if (several == Several::mean) {
+        sum += value;
+    } else {
+        sum = several == Several::largest ? std::max(sum, value) : std::min(sum, value);
+    }
+}
+
+Grid<float> on_cells(const Grid<float>& from, Several several, const GridGeometry& wanted) {
+    Grid<float> to(wanted, no_value);
+    if (from.values.empty()) return to;
+    std::vector<std::uint32_t> centres(wanted.size());
+    std::size_t cell = 0;
+    for (int row = 0; row < from.geometry.rows; ++row) {
+        for (int column = 0; column < from.geometry.columns; ++column) {
+            if (!cell_at(wanted, from.geometry.centre(column, row), cell)) continue;
+            add(from.at(column, row), several, to.values[cell]);
+            ++centres[cell];
+        }
+    }
+    for (std::size_t k = 0; k < to.values.size(); ++k) {
+        if (several == Several::mean && centres[k] > 1) to.values[k] /= static_cast<float>(centres[k]);
+        if (centres[k] > 0) continue;
+        const auto columns = static_cast<std::size_t>(wanted.columns);
+        const auto centre = wanted.centre(static_cast<int>(k % columns), static_cast<int>(k / columns));
+        if (cell_at(from.geometry, centre, cell)) to.values[k] = from.values[cell];
+    }
+    return to;
+}
+
+void give_map(const Answers::Map& made, talus_map* map) {
+    const GridGeometry& g = made.geometry;
+    give<talus_map>({0, {g.x_min, g.y_min, g.cell, g.columns, g.rows}, made.values.data()}, map);
+}
+
+}  // namespace
+
+extern "C" {
+
+int talus_get_map(const talus_simulation* simulation, const char* name, talus_map* map, talus_error* error) {
+    return guarded(error, [&]() -> Status {
+        TALUS_TRY(need(simulation, "simulation"));
+        TALUS_TRY(need(name, "name"));
+        TALUS_TRY(check_size(map, "map"));
+        auto& maps = simulation->answers.maps;
+        auto found = maps.find(name);
+        if (found == maps.end()) {
+            TALUS_ASSIGN(const Layer layer, layer_named(name));
+            TALUS_ASSIGN(const Grid<float> grid, read_layer(*simulation->scenario, layer));
+            found = maps.emplace(name, Answers::Map{grid.geometry, buffer_of(grid.values)}).first;
+        }
+        give_map(found->second, map);
+        return {};
+    });
+}
+
+int talus_get_map_on(const talus_simulation* simulation, const char* name, const talus_grid* grid, talus_map* map,
+                     talus_error* error) {
+    return guarded(error, [&]() -> Status {
+        TALUS_TRY(need(simulation, "simulation"));
+        TALUS_TRY(need(name, "name"));
+        TALUS_TRY(need(grid, "grid"));
+        TALUS_TRY(check_size(map, "map"));
+        TALUS_ASSIGN(const Layer layer, layer_named(name));
+        TALUS_ASSIGN(const GridGeometry wanted, talus::embed::geometry_of(*grid, 1));
+        auto& maps = simulation->answers.maps;
+        const std::string key = fmt::format("{} {} {} {} {} {}", name, wanted.x_min, wanted.y_min, wanted.cell,
+                                            wanted.columns, wanted.rows);
+        auto found = maps.find(key);
+        if (found == maps.end()) {
+            TALUS_ASSIGN(const Grid<float> read, read_layer(*simulation->scenario, layer));
+            const Grid<float> made = on_cells(read, layer.several, wanted);
+            found = maps.emplace(key, Answers::Map{wanted, buffer_of(made.values)}).first;
+        }
+        give_map(found->second, map);
+        return {};
+    });
+}
+
+}  // extern "C"
