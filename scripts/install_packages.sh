@@ -15,7 +15,7 @@ if ((${node_version%%.*} < 18)); then packages+=(nodejs); fi
 command -v npm >/dev/null || packages+=(npm)
 if [[ ${1:-build} == qgis ]]; then packages+=(qgis python3-qgis python3-gdal python3-numpy); fi
 if [[ ${1:-build} == test ]]; then
-    packages+=(libbenchmark-dev clang-format clang-tidy python3 python3-gdal python3-numpy poppler-utils
+    packages+=(libbenchmark-dev clang-format clang-tidy python3 python3-gdal python3-numpy python3-pip mypy poppler-utils
                python3-matplotlib python3-xarray python3-geopandas mosquitto mosquitto-clients)
     command -v chromium >/dev/null || command -v chromium-browser >/dev/null || command -v google-chrome >/dev/null ||
         packages+=(chromium)

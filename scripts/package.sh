@@ -18,6 +18,11 @@ for kind in DEB TGZ; do
     cpack --config build/release/CPackConfig.cmake -G "$kind" -B build/package
 done
 rm -rf build/package/_CPack_Packages
+if command -v python3 >/dev/null; then
+    python3 python/make_wheel.py build/release/apps/embed/libtalus.so build/release/bin/talus build/package
+else
+    echo "scripts/package.sh: no wheel is made: python3 is not installed" >&2
+fi
 ls -l build/package
 [[ ${1:-} == --test ]] || exit 0
 

@@ -9,15 +9,21 @@
     simulation.advance(10)                   # s
     x, y, z = simulation.position            # NumPy
 
-Needs NumPy and libtalus; xarray, geopandas and matplotlib where the methods named after them are used.
+Needs NumPy and libtalus, and the program for ensembles and calibrations; xarray, geopandas, pandas and matplotlib where the
+methods named after them are used.
 """
 
 from ._library import FaultError, InputError, TalusError, version
-from .simulation import UNITS, Building, Front, Map, Phase, Simulation, Structure
-from .study import Result, run, study
+from .ensembles import Calibration, Ensemble, calibrate, ensemble
+from .maps import UNITS, Map, read_geotiff, write_geotiff
+from .measures import Energy, Front, Gauge, RunOut, Structure
+from .simulation import Building, Phase, Simulation
+from .study import Result, Study, run, study
+from .table import Table
 
 __version__ = version
 __all__ = [
-    "UNITS", "Building", "FaultError", "Front", "InputError", "Map", "Phase", "Result", "Simulation", "Structure",
-    "TalusError", "run", "study",
+    "UNITS", "Building", "Calibration", "Energy", "Ensemble", "FaultError", "Front", "Gauge", "InputError", "Map", "Phase",
+    "Result", "RunOut", "Simulation", "Structure", "Study", "Table", "TalusError", "calibrate", "ensemble", "read_geotiff",
+    "run", "study", "write_geotiff",
 ]  # fmt: skip

@@ -7,7 +7,7 @@ import ctypes
 import threading
 from ctypes import POINTER, c_char_p, c_double, c_float, c_int, c_int32, c_size_t, c_uint8, c_uint32, c_uint64, c_void_p
 from pathlib import Path
-from typing import Any, Callable
+from typing import Any, Callable, Sequence, Tuple
 
 INTERFACE = "0.1"  #: of talus.h that is declared here
 
@@ -24,10 +24,13 @@ class FaultError(TalusError):
     """A step cannot be trusted; the simulation is as that step left it."""
 
 
+Fields = Sequence[Tuple[str, Any]]  # of a struct, for those who check types
+
+
 class Sized(ctypes.Structure):
     """A struct that says its size first."""
 
-    _fields_ = [("size", c_size_t)]
+    _fields_: Fields = [("size", c_size_t)]
 
     def __init__(self, *values: Any) -> None:
         super().__init__(ctypes.sizeof(type(self)), *values)
@@ -123,7 +126,10 @@ _functions = {
 def _load() -> ctypes.CDLL:
     name = f"libtalus.so.{INTERFACE}"
     # Installed together: PREFIX/lib/python3/dist-packages/talus and PREFIX/lib/<...>/libtalus.so.0.1.
-    for folder in Path(__file__).resolve().parents:
+    here = Path(__file__).resolve()
+    if (here.parent / name).exists():  # a wheel has it beside this file
+        return ctypes.CDLL(str(here.parent / name))
+    for folder in here.parents:
         if folder.name in ("lib", "lib64"):
             for candidate in (folder / name, *folder.glob(f"*/{name}")):
                 if candidate.exists():
@@ -163,6 +169,11 @@ def call(name: str, *arguments: object) -> None:
     raise {2: InputError, 3: FaultError}.get(code, TalusError)(text)
 
 
+def close(simulation: c_void_p) -> None:
+    """Frees a simulation; NULL: does nothing."""
+    library.talus_close(simulation)
+
+
 def _until_done(future: concurrent.futures.Future[Any], meanwhile: Callable[[], object] = lambda: None) -> None:
     # Ten times a second: a signal that comes just before a thread begins to wait does not wake it.
     while not concurrent.futures.wait([future], 0.1).done:
@@ -179,7 +190,8 @@ class Caller:
         self._threads = concurrent.futures.ThreadPoolExecutor(1, "talus")
         # A signal may come while a call is handed over. The one thread is there from now on, and takes what it is given in
         # turn: whatever of the handing over was done, the next call waits for this one.
-        self._threads.submit(int).result()
+        self._last: concurrent.futures.Future[Any] = self._threads.submit(int)  # after a call that was cancelled
+        self._last.result()
         self._at_rest = True
 
     def wait(self) -> None:
@@ -215,10 +227,16 @@ class Caller:
                 progress(1.0)
         except BaseException:
             cancelled.set()
-            last = self._threads.submit(abandoned or int)
-            concurrent.futures.wait([last], self._patience)
+            after: Callable[[], object] = abandoned or int
+            self._last = self._threads.submit(after)
+            concurrent.futures.wait([self._last], self._patience)
             raise
         self._at_rest = True
+
+    @property
+    def busy(self) -> bool:
+        """Whether a call that was cancelled has not ended yet."""
+        return not self._last.done()
 
     def close(self) -> None:
         """Waits for the last call; none can be made any more."""

@@ -7,12 +7,16 @@ import enum
 import json
 import os
 from dataclasses import dataclass
+from pathlib import Path
+from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING, Any, Callable, Mapping, NoReturn, Sequence
 
 import numpy as np
 
 from . import _arguments as arguments
 from . import _library as lib
+from .maps import UNITS, Extent, Map
+from .measures import Energy, Front, Gauge, Products, RunOut, Structure, numbers, with_impacts
 
 if TYPE_CHECKING:
     import numpy.typing as npt
@@ -38,83 +42,6 @@ class Building:
     outline: Sequence[tuple[float, float]]
     height: float = 6
     name: str = ""
-
-
-@dataclass(frozen=True)
-class Map:
-    """A raster: `values[row, column]`, row 0 southernmost; NaN where there is no value."""
-
-    name: str
-    values: npt.NDArray[np.float32]
-    x_min: float  #: west edge, m
-    y_min: float  #: south edge, m
-    cell: float  #: m
-
-    @property
-    def x(self) -> npt.NDArray[np.float64]:
-        """Of the middle of each column, m."""
-        return self.x_min + (np.arange(self.values.shape[1]) + 0.5) * self.cell
-
-    @property
-    def y(self) -> npt.NDArray[np.float64]:
-        """Of the middle of each row, m."""
-        return self.y_min + (np.arange(self.values.shape[0]) + 0.5) * self.cell
-
-    def to_xarray(self) -> Any:
-        """An xarray.DataArray with coordinates x and y, and its unit as attribute. Needs xarray."""
-        import xarray
-
-        return xarray.DataArray(
-            self.values, {"y": self.y, "x": self.x}, ("y", "x"), name=self.name, attrs={"units": UNITS[self.name]}
-        )
-
-    def plot(self, ax: Any = None) -> Any:
-        """Draws the map on matplotlib axes and returns them. Needs matplotlib."""
-        import matplotlib.pyplot as plt
-
-        ax = ax or plt.gca()
-        east, north = self.x_min + self.values.shape[1] * self.cell, self.y_min + self.values.shape[0] * self.cell
-        image = ax.imshow(self.values, origin="lower", extent=(self.x_min, east, self.y_min, north), cmap="cividis_r")
-        ax.figure.colorbar(image, ax=ax, label=f"{self.name.replace('_', ' ')}, {UNITS[self.name]}")
-        ax.set_xlabel("east, m")
-        ax.set_ylabel("north, m")
-        return ax
-
-
-#: Maps by name, with their units.
-UNITS = {
-    "depth": "m",
-    "peak_depth": "m",
-    "peak_speed": "m/s",
-    "peak_pressure": "Pa",
-    "arrival_time": "s",
-    "deposit_depth": "m",
-    "erosion_depth": "m",
-}
-
-
-@dataclass(frozen=True)
-class Front:
-    """The front along the flow path. NaN: no value."""
-
-    chainage: npt.NDArray[np.float64]  #: m
-    arrival_time: npt.NDArray[np.float64]  #: s
-    velocity: npt.NDArray[np.float64]  #: m/s
-
-
-@dataclass(frozen=True)
-class Structure:
-    """What debris did to a building or barrier."""
-
-    name: str
-    hit: bool
-    is_barrier: bool
-    first_hit_time: float  #: s; NaN: not hit
-    failure_time: float  #: s; NaN: it did not fail
-    peak_force: float  #: N, on all its walls, filtered over outputs.impact_filter_window_s
-    peak_impact_pressure: float  #: Pa, of a patch of outputs.impact_patch_edge_m squared, filtered likewise
-    peak_depth: float  #: m, of the flow in front of its walls
-    impulse: float  #: N s
 
 
 class Simulation:
@@ -183,13 +110,12 @@ class Simulation:
         )  # fmt: skip
         path = None if folder is None else arguments.path("folder", folder)
         texts = _texts(settings)
-        # `kept`: in memory as long as the call may last.
-        kept = (ground, thickness, outlines)
         simulation = cls.__new__(cls)
-        simulation._open(
-            lambda watch, made, _=kept: lib.call("talus_open_arrays", ctypes.byref(arrays), path, *texts, watch, made),
-            progress,
-        )
+
+        def work(watch: Any, made: Any, _: object = (ground, thickness, outlines)) -> None:  # kept as long as the call may last
+            lib.call("talus_open_arrays", ctypes.byref(arrays), path, *texts, watch, made)
+
+        simulation._open(work, progress)
         return simulation
 
     @classmethod
@@ -205,9 +131,10 @@ class Simulation:
         self._made = ctypes.c_void_p()
         self._calls = lib.Caller()
         self._calls(
-            lambda watch: work(watch, ctypes.byref(made)), progress, lambda: lib.library.talus_close(made)
+            lambda watch: work(watch, ctypes.byref(made)), progress, lambda: lib.close(made)
         )
         self._made = made
+        self._crs = ""
 
     @property
     def _handle(self) -> ctypes.c_void_p:
@@ -223,7 +150,7 @@ class Simulation:
         if calls:
             calls.close()
         if made:
-            lib.library.talus_close(made)
+            lib.close(made)
 
     def __enter__(self) -> Simulation:
         return self
@@ -236,6 +163,17 @@ class Simulation:
 
     def __reduce__(self) -> NoReturn:
         raise TypeError("a Simulation cannot be copied or pickled; save() it, and open it again with from_saved()")
+
+    def __repr__(self) -> str:
+        if not getattr(self, "_made", None):
+            return "<talus.Simulation: closed>"
+        if self._calls.busy:
+            return "<talus.Simulation: finishes a step>"
+        particles = len(self.id)
+        return (
+            f'<talus.Simulation "{self.json("scene")["title"]}": t = {self.time:.4g} s after {self.steps} steps, '
+            f"{particles} particles, {self.phase.name.lower().replace('_', ' ')}>"
+        )
 
     def step(self, count: int = 1, progress: Progress | None = None) -> Phase:
         """Takes time steps, fewer if the run is over before. Raises FaultError where a step cannot be trusted."""
@@ -263,17 +201,17 @@ class Simulation:
     @property
     def message(self) -> str:
         """Why it is at rest, ended or stopped; empty while ready."""
-        return self._state.message.decode()
+        return str(self._state.message.decode())
 
     @property
     def time(self) -> float:
         """Simulated time, s."""
-        return self._state.time
+        return float(self._state.time)
 
     @property
     def steps(self) -> int:
         """Time steps taken so far."""
-        return self._state.steps
+        return int(self._state.steps)
 
     @property
     def hash(self) -> str:
@@ -290,7 +228,7 @@ class Simulation:
     @property
     def particle_volume(self) -> float:
         """Volume that a particle stands for, m3."""
-        return self._state.particle_volume
+        return float(self._state.particle_volume)
 
     def _debris(self, *names: str) -> tuple[npt.NDArray[Any], ...]:
         debris = lib.Debris()
@@ -312,12 +250,32 @@ class Simulation:
         """Names every particle for good, as their order changes."""
         return self._debris("id")[0]
 
-    def map(self, name: str) -> Map:
-        """The map of that name (see UNITS) as it is now."""
+    @property
+    def crs(self) -> str:
+        """Reference system of the terrain: "EPSG:2326", or WKT where it has no code."""
+        if not self._crs:
+            named = str(self.json("scene")["crs"])
+            self._crs = named if named.startswith("EPSG:") else self._products().crs
+        return self._crs
+
+    def map(self, name: str, extent: Extent | None = None, cell_m: float | None = None) -> Map:
+        """The map of that name (see UNITS) as it is now. `extent`, `cell_m`: on these cells, as Map.on_grid(); None: where it
+        has values, on those of the run."""
         found = lib.Map()
         lib.call("talus_get_map", self._handle, arguments.text("name", name), ctypes.byref(found))
         grid = found.grid
-        return Map(name, _copy(found.values, (grid.rows, grid.columns)), grid.x_min, grid.y_min, grid.cell)
+        values = _copy(found.values, (grid.rows, grid.columns))
+        made = Map(str(name), values, grid.x_min, grid.y_min, grid.cell, self.crs, UNITS.get(name, ""))
+        if extent is None and cell_m is None:
+            return made
+        return made.on_grid(self.extent if extent is None else extent, cell_m)
+
+    @property
+    def extent(self) -> tuple[float, float, float, float]:
+        """West, south, east and north edge of the cells that maps can have, m."""
+        grid = self.json("scene")["map"]
+        west, south, cell = grid["x_min_m"], grid["y_min_m"], grid["cell_m"]
+        return west, south, west + grid["columns"] * cell, south + grid["rows"] * cell
 
     @property
     def front(self) -> Front:
@@ -344,7 +302,38 @@ class Simulation:
                 Structure(s.name.decode(), bool(s.hit), bool(s.is_barrier), s.first_hit_time, s.failure_time,
                           s.peak_force, s.peak_impact_pressure, s.peak_depth, s.impulse)
             )  # fmt: skip
-        return made
+        impacts = self.json("impacts")
+        return [with_impacts(structure, impacts) for structure in made]
+
+    @property
+    def series(self) -> dict[str, npt.NDArray[np.float64]]:
+        """The run over time, every outputs.sample_interval_s: "time_s", "kinetic_energy_J", "volume_deposited_m3", ..."""
+        return {name: numbers(column) for name, column in self.json("series")["time"].items()}
+
+    @property
+    def energy(self) -> Energy:
+        """Energy over time. Whether debris has more than gravity gave it is a check of `verdict`."""
+        series = self.json("series")["time"]
+        return Energy(*(numbers(series[name]) for name in ("time_s", "kinetic_energy_J", "potential_energy_J")))
+
+    @property
+    def gauges(self) -> list[Gauge]:
+        """What the gauges of the scene have recorded; takes as long as `run_out`."""
+        return self._products().gauges if self.json("scene")["gauges"] else []
+
+    @property
+    def run_out(self) -> RunOut:
+        """How far debris has come. The results are written to a temporary folder for it, in about half a second."""
+        return self._products().run_out
+
+    def results(self) -> dict[str, Any]:
+        """What a report of the run so far shows, as results.json of docs/results.md; takes as long as `run_out`."""
+        return self._products().results
+
+    def _products(self) -> Products:
+        with TemporaryDirectory(prefix="talus_") as folder:
+            self.write_results(folder)
+            return Products.read(Path(folder))
 
     def set(self, key: str, value: float) -> None:
         """A live key of the scene between two steps: "material.friction_coefficient"."""

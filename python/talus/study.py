@@ -7,16 +7,26 @@ import os
 import sys
 import time
 import warnings
-from concurrent.futures import ProcessPoolExecutor
-from dataclasses import dataclass, field
-from typing import Any, Mapping, Sequence, Union
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, Dict, List, Mapping, Optional, Sequence, Tuple, Union
 
-from .simulation import UNITS, Front, Map, Phase, Settings, Simulation, Structure
+import numpy as np
+
+from . import _arguments as arguments
+from ._library import InputError
+from ._workers import work_in_processes
+from .maps import UNITS, Extent, Map, union
+from .measures import Energy, Front, Gauge, RunOut, Structure
+from .simulation import Phase, Settings, Simulation
+from .table import Table
+
+if TYPE_CHECKING:
+    import numpy.typing as npt
 
 Scene = Union[str, "os.PathLike[str]", None]
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Result:
     """The result of a run."""
 
@@ -26,28 +36,44 @@ class Result:
     time: float  #: s, simulated
     hash: str
     crs: str  #: of the terrain, "EPSG:2326" or WKT
-    front: Front = field(repr=False)
-    verdict: dict[str, Any] = field(repr=False)  #: as Simulation.verdict
-    structures: list[Structure] = field(repr=False)
-    maps: dict[str, Map] = field(repr=False)  #: by name, see UNITS
+    front: Front
+    verdict: dict[str, Any]  #: as Simulation.verdict
+    structures: list[Structure]  #: with what went over barriers and what they retain
+    maps: dict[str, Map]  #: by name, see UNITS
+    run_out: RunOut
+    energy: Energy
+    series: dict[str, npt.NDArray[np.float64]]  #: the run over time, as Simulation.series
+    gauges: list[Gauge]
+    results: dict[str, Any]  #: all that the report shows, as results.json of docs/results.md
+
+    def __repr__(self) -> str:
+        given = ", ".join(f"{key} = {value!s}" for key, value in self.settings.items())
+        return (
+            f"<talus.Result{': ' if given else ''}{given}; t = {self.time:.4g} s, run-out {self.run_out.along_flow:.4g} m, "
+            f"{sum(s.hit for s in self.structures)} of {len(self.structures)} structures hit; {self.verdict['text']}>"
+        )
 
     def to_xarray(self) -> Any:
-        """An xarray.Dataset of all maps that have a value anywhere. Needs xarray."""
-        import numpy as np
+        """An xarray.Dataset of all maps that have a value anywhere, on the cells that they all cover, with the reference
+        system as rioxarray has it. Needs xarray."""
         import xarray
 
-        filled = {name: found for name, found in self.maps.items() if np.isfinite(found.values).any()}
-        return xarray.Dataset({name: found.to_xarray() for name, found in filled.items()}, attrs={"crs": self.crs})
+        filled = [found for found in self.maps.values() if np.isfinite(found.values).any()]
+        if not filled:
+            return xarray.Dataset(attrs={"crs": self.crs})
+        cell = self.maps["peak_depth"].cell
+        extent = union([found for found in filled if found.cell == cell])
+        placed = {found.name: found.on_grid(extent, cell).to_xarray() for found in filled}
+        return xarray.Dataset(placed, attrs={"crs": self.crs})
 
     def to_geopandas(self, threshold: float = 0.1) -> Any:
         """The cells where debris was deeper than `threshold`, m, as a geopandas.GeoDataFrame of squares with their
         values, in the terrain's reference system. Needs geopandas."""
         import geopandas
-        import numpy as np
         from shapely.geometry import box
 
         depth = self.maps["peak_depth"]
-        rows, columns = np.nonzero(depth.values > threshold)
+        rows, columns = np.nonzero(depth.values > arguments.number("threshold", threshold))
         half = depth.cell / 2
         squares = [box(x - half, y - half, x + half, y + half) for x, y in zip(depth.x[columns], depth.y[rows])]
         alike = {n: m for n, m in self.maps.items() if m.values.shape == depth.values.shape}
@@ -82,12 +108,22 @@ class _Clock:
 
 
 def run(
-    scene: Scene = None, settings: Settings | None = None, *, end_time: float | None = None, progress: bool | None = None
+    scene: Scene = None,
+    settings: Settings | None = None,
+    *,
+    end_time: float | None = None,
+    extent: Extent | None = None,
+    cell_m: float | None = None,
+    progress: bool | None = None,
 ) -> Result:
-    """Runs a scene until it is over, or until `end_time`, s. `progress`: a bar on stderr with the wall time left, as
-    `talus run` estimates it; None: where that is a terminal."""
+    """Runs a scene until it is over, or until `end_time`, s. `cell_m`: maps are measured on cells of this size, m, and cover
+    `extent` (west, south, east, north edge in m; None: the whole terrain), so that those of several runs can be stacked;
+    None: they end where they have no values. `progress`: a bar on stderr with the wall time left, as `talus run` estimates
+    it; None: where that is a terminal."""
     bar = sys.stderr.isatty() if progress is None else progress
-    with Simulation(scene, settings) as simulation:
+    if end_time is not None:
+        end_time = arguments.number("end_time", end_time)
+    with Simulation(scene, _with_cell(settings, extent, cell_m)) as simulation:
         loaded = simulation.json("scene")
         end = loaded["end_time_s"]
         if end_time is not None:
@@ -102,21 +138,81 @@ def run(
                 break
         if bar:
             print(file=sys.stderr)
-        maps = {name: simulation.map(name) for name in UNITS}
+        maps = {name: simulation.map(name, extent, cell_m) for name in UNITS}
+        products = simulation._products()
         verdict = simulation.verdict
         for warning in verdict["warnings"]:
             warnings.warn(warning, stacklevel=2)
         return Result(
-            dict(settings or {}), simulation.phase, simulation.message, simulation.time, simulation.hash, loaded["crs"],
-            simulation.front, verdict, simulation.structures, maps,
+            dict(settings or {}), simulation.phase, simulation.message, simulation.time, simulation.hash, simulation.crs,
+            simulation.front, verdict, simulation.structures, maps, products.run_out, simulation.energy, simulation.series,
+            simulation.gauges, products.results,
         )  # fmt: skip
 
 
-def _run_one(job: tuple[Any, dict[str, object], float | None]) -> Result:
-    scene, settings, end_time = job
+def _with_cell(settings: Settings | None, extent: Extent | None, cell_m: float | None) -> Settings | None:
+    """The settings with which maps have this cell. What is wrong with the grid is said before anything runs."""
+    if cell_m is None:
+        if extent is not None:
+            raise InputError("cell_m = None: must be given with extent, so that maps of all runs have the same cells")
+        return settings
+    cell = arguments.number("cell_m", cell_m, above=0)
+    if extent is not None:
+        arguments.grid(extent, cell)
+    other = (settings or {}).get("outputs.map_cell_m", cell)
+    if other != cell:
+        raise InputError(f"cell_m = {cell:g}: outputs.map_cell_m is {other}; give one of them")
+    return {**(settings or {}), "outputs.map_cell_m": cell}
+
+
+class Study(List[Result]):
+    """The results of study(), one per combination."""
+
+    def stack(self, name: str) -> npt.NDArray[np.float32]:
+        """The maps of that name as one array, `[run, row, column]`. They must lie on one grid: give study() a `cell_m`."""
+        maps = []
+        for number, result in enumerate(self):
+            if name not in result.maps:
+                raise InputError(f"name = {arguments.short(name)}: must be one of {', '.join(result.maps)}")
+            maps.append(result.maps[name])
+            if (maps[-1].extent, maps[-1].cell) != (maps[0].extent, maps[0].cell):
+                raise InputError(f"{name} of run {number} has other cells than that of run 0; give study() a cell_m")
+        return np.stack([found.values for found in maps]) if maps else np.zeros((0, 0, 0), np.float32)
+
+    def table(self) -> Table:
+        """A row per run: its settings, run-out, energy, structures hit, overtopping, verdict."""
+        columns: dict[str, list[Any]] = {key: [r.settings.get(key) for r in self] for r in self for key in r.settings}
+        columns["time_s"] = [r.time for r in self]
+        columns["run_out_along_flow_m"] = [r.run_out.along_flow for r in self]
+        columns["run_out_straight_m"] = [r.run_out.straight for r in self]
+        columns["drop_m"] = [r.run_out.drop for r in self]
+        columns["runout_angle_deg"] = [r.run_out.runout_angle for r in self]
+        columns["peak_kinetic_energy_J"] = [max(r.energy.kinetic, default=np.nan) for r in self]
+        columns["buildings_hit"] = [sum(s.hit and not s.is_barrier for s in r.structures) for r in self]
+        columns["overtopped_m3"] = [_overtopped(r) for r in self]
+        columns["within_limits"] = [bool(r.verdict["within_limits"]) for r in self]
+        columns["hash"] = [r.hash for r in self]
+        return Table(columns)
+
+    def __repr__(self) -> str:
+        beyond = sum(not r.verdict["within_limits"] for r in self)
+        return f"<talus.Study: {len(self)} runs, {beyond} beyond a limit>"
+
+
+def _overtopped(result: Result) -> float:
+    """Over the crests of all barriers; NaN: there is none."""
+    barriers = [structure.overtopped_volume for structure in result.structures if structure.is_barrier]
+    return sum(barriers) if barriers else np.nan
+
+
+_Job = Tuple[Any, Dict[str, object], Optional[float], Optional[Extent], Optional[float]]
+
+
+def _run_one(job: _Job) -> Result:
+    scene, settings, end_time, extent, cell_m = job
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", UserWarning)  # study() says it once
-        return run(scene, settings, end_time=end_time, progress=False)
+        return run(scene, settings, end_time=end_time, extent=extent, cell_m=cell_m, progress=False)
 
 
 def study(
@@ -125,15 +221,22 @@ def study(
     settings: Settings | None = None,
     *,
     end_time: float | None = None,
+    extent: Extent | None = None,
+    cell_m: float | None = None,
     processes: int | None = None,
-) -> list[Result]:
+) -> Study:
     """Runs a scene once for every combination of `values` (a list by key), in `processes` at once (None: one per core),
-    each on one thread. Results are in the order of itertools.product; Result.settings says what each run had. Warns once
-    if runs are beyond a limit (Result.verdict)."""
-    base = {"solver.thread_count": 1, **(settings or {})}
-    jobs = [(scene, {**base, **dict(zip(values, chosen))}, end_time) for chosen in itertools.product(*values.values())]
-    with ProcessPoolExecutor(processes) as pool:
-        results = list(pool.map(_run_one, jobs))
+    each on one thread. `extent`, `cell_m`: as of run(); with them Study.stack() has the maps of all runs in one array.
+    Results are in the order of itertools.product; Result.settings says what each run had. Warns once if runs are beyond a
+    limit (Result.verdict)."""
+    base: dict[str, object] = {"solver.thread_count": 1, **(settings or {})}
+    _with_cell({**base, **{key: chosen for key, chosen in values.items() if key == "outputs.map_cell_m"}}, extent, cell_m)
+    at_once = (os.cpu_count() or 1) if processes is None else arguments.count("processes", processes, 512)
+    jobs: list[_Job] = [
+        (scene, {**base, **dict(zip(values, chosen))}, end_time, extent, cell_m)
+        for chosen in itertools.product(*values.values())
+    ]
+    results = Study(work_in_processes(_run_one, jobs, max(1, at_once)))
     beyond = [warning for result in results for warning in result.verdict["warnings"][:1]]
     if beyond:
         warnings.warn(f"{len(beyond)} of {len(results)} runs are beyond a limit; the first: {beyond[0]}", stacklevel=2)
