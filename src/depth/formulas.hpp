@@ -1,6 +1,7 @@
 #pragma once
 
 #include "core/number.hpp"
+#include "sim/physics/samosat.hpp"
 
 /// The formulas of the depth-averaged model, on one number or on many lanes; docs/depth-averaged.md has the equations.
 namespace talus::depth {
@@ -193,6 +194,7 @@ struct Resistance {
     Real inverse_turbulence;  ///< 1 / xi at the depth of the flow, s2/m
     Real stem_drag;           ///< deceleration over v^2, 1/m
     Real viscosity;           ///< kinematic, on the ground, m2/s
+    Real fluidization{};      ///< R_s0 of samosAT; 0: friction is the same at every speed
 };
 
 /// What a plug adds to the stress on the ground, over the yield stress. A sheet that shears below a plug (Bingham 1922)
@@ -218,14 +220,22 @@ TALUS_INLINE Real plug_excess(const Real& momentum, const Real& yield, const Rea
     return Real(0.5F) - Real(0.5F) * inverse;
 }
 
+/// The momentum that drag leaves of what friction left: the positive root of laminar m + square m^2 = left.
+template <class Real>
+TALUS_INLINE Real left_by(const Real& friction_left, const Real& laminar, const Real& square) {
+    using std::sqrt;
+    const Real left = larger(Real(0), friction_left);
+    return Real(2) * left / (laminar + sqrt(laminar * laminar + Real(4) * square * left));
+}
+
 /// Momentum along the ground (depth times speed, m2/s) after a step of resistance, implicitly: Coulomb and cohesion,
 /// which stop, with the plug of cohesive viscous debris; laminar drag 3 nu U / h on the ground below a parabolic
-/// profile; Voellmy's (1955) rho g U^2 / xi and stems (see sim/physics/resistance.hpp). `stretch`: area of the ground
-/// over its plan area; `normal_force`: over density and plan area, m2/s2.
+/// profile; Voellmy's (1955) rho g U^2 / xi and stems (see sim/physics/resistance.hpp); samosAT (see
+/// sim/physics/samosat.hpp). `stretch`: area of the ground over its plan area; `normal_force`: normal stress over
+/// density, m2/s2.
 template <class Real>
 TALUS_INLINE Real resisted(const Resistance<Real>& r, const Real& gravity, const Real& momentum, const Real& depth,
                            const Real& normal_force, const Real& stretch, const Real& time_step) {
-    using std::sqrt;
     const Real inverse_depth = Real(1) / larger(depth, Real(dry_depth));
     const Real laminar =
         Real(1) + Real(3) * r.viscosity * time_step * (stretch * inverse_depth) * (stretch * inverse_depth);
@@ -235,10 +245,20 @@ TALUS_INLINE Real resisted(const Resistance<Real>& r, const Real& gravity, const
         strength = strength + strength * plug_excess(momentum - stopping * r.friction * normal_force,
                                                      stopping * strength, laminar - Real(1));
     }
-    const Real left = larger(Real(0), momentum - time_step * stretch * (r.friction * normal_force + strength));
     const Real square =
         time_step * inverse_depth * (gravity * stretch * r.inverse_turbulence * inverse_depth + r.stem_drag);
-    return Real(2) * left / (laminar + sqrt(laminar * laminar + Real(4) * square * left));
+    const Real area = time_step * stretch;
+    if (!any(r.fluidization > Real(0))) {
+        return left_by(momentum - area * (r.friction * normal_force + strength), laminar, square);
+    }
+    // Friction that falls with the speed (samosAT), from rest upwards, so that debris stops where it can.
+    Real friction = Real(2) * r.friction, left = Real(0);
+    for (int k = 0; k < 5; ++k) {
+        left = left_by(momentum - area * (friction * normal_force + strength), laminar, square);
+        const Real speed = left * inverse_depth;
+        friction = r.friction * (Real(1) + sim::slow_share(r.fluidization, normal_force, speed * speed));
+    }
+    return left;
 }
 
 /// Whether debris at rest stays: friction and cohesion carry the slope of its surface. Slopes of the surface are
@@ -274,7 +294,8 @@ TALUS_INLINE RestBalance<Real> rest_balance(const RestSlope<Real>& x, const Rest
     const Real square = select(x.extreme + y.extreme > Real(0), larger(in_x, in_y),
                                x.slope * x.slope + y.slope * y.slope + along * along);
     const Real normal = gravity * depth;
-    const Real strength = r.friction * normal + r.strength * (Real(1) + larger(Real(0), along));
+    const Real at_rest = select(r.fluidization > Real(0), Real(2) * r.friction, r.friction);
+    const Real strength = at_rest * normal + r.strength * (Real(1) + larger(Real(0), along));
     return {square * normal * normal, strength * strength * square_stretch};
 }
 

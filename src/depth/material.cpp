@@ -11,6 +11,7 @@ Material material_of(const params::MaterialSpec& material) {
     result.cohesion = material.cohesion;
     result.viscosity = material.viscosity_on_ground ? material.kinematic_viscosity.value_or(0)
                                                     : params::laminar_viscosity_of(material);
+    result.samosat = sim::samosat_of(material);
     result.pore_pressure_ratio = material.pore_pressure_ratio;
     result.pore_pressure_decay_time = material.pore_pressure_decay_time.value_or(0);
     return result;

@@ -89,6 +89,11 @@ HWY_INLINE Resistance<L> resistance_at(const StageData& data, std::ptrdiff_t i, 
         const L thickness = larger(depth, L(dry_depth)) / stretch;
         r.inverse_turbulence = r.inverse_turbulence * sim::cube_root(L(data.turbulent_thickness) / thickness);
     }
+    if (data.samosat.on) {
+        const L thickness = larger(depth, L(dry_depth)) / stretch;
+        r.inverse_turbulence = sim::wall_drag(data.samosat, thickness) / L(data.gravity);
+    }
+    r.fluidization = L(data.samosat.fluidization);
     r.stem_drag = known(data.cover.stem_drag, 0);
     r.viscosity = known(data.cover.viscosity, data.viscosity);
     return r;

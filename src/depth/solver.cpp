@@ -237,6 +237,7 @@ double Solver::advance_stage(bool second) {
         material_.turbulent_friction > 0 ? static_cast<float>(1 / material_.turbulent_friction) : 0;
     data.turbulent_thickness = static_cast<float>(material_.turbulent_thickness);
     data.viscosity = static_cast<float>(material_.viscosity);
+    data.samosat = material_.samosat;
     data.effective_share = static_cast<float>(1 - material_.pore_pressure_ratio);
     const double decay = material_.pore_pressure_decay_time;
     const double halfway = pore_pressure_left_ * (decay > 0 ? std::exp(-time_step_ / (2 * decay)) : 1);

@@ -24,6 +24,7 @@ struct Material {
     double turbulent_thickness = 0;       ///< m, normal to the ground, of flow with that xi; 0: of any
     double cohesion = 0;                  ///< Pa
     double viscosity = 0;                 ///< kinematic, m2/s, of laminar flow over ground that holds it; 0: none
+    sim::Samosat samosat;                 ///< in place of `turbulent_friction`
     double pore_pressure_ratio = 0;       ///< r_u, when debris starts to move or comes in
     double pore_pressure_decay_time = 0;  ///< s; 0: constant
     double gravity = 9.80665;             ///< m/s2

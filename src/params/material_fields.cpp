@@ -1,3 +1,6 @@
+#include <optional>
+#include <utility>
+
 #include <fmt/format.h>
 
 #include "params/declaration.hpp"
@@ -35,7 +38,7 @@ void declare_resistance(Declaration<MaterialSpec>& s) {
         .assumes("Cohesion")
         .live_as()
         .needs(stress())
-        .also_called({"tau0", "tau_y", "yield_stress", "shear_strength"});
+        .also_called({"tau0", "tau0_samosat", "tau_y", "yield_stress", "shear_strength"});
     s.key(
          "pore_pressure_ratio", "", &MaterialSpec::pore_pressure_ratio, between(0, 1),
          "r_u, pore pressure over the total normal stress when debris starts: friction on ground, buildings and inside "
@@ -65,6 +68,57 @@ void declare_resistance(Declaration<MaterialSpec>& s) {
           "Density of the grains in the inertial number.");
 }
 
+/// Friction of samosAT, with the constants that AvaFrame has (com1DFACfg.ini).
+void declare_samosat(Declaration<MaterialSpec>& s) {
+    s.key("samosat", "", &MaterialSpec::samosat, anything(),
+          "Friction of samosAT on the ground, the law of AvaFrame (com1DFA) for snow: friction_coefficient times 1 + "
+          "Rs0 / (Rs0 + rho v2 / normal stress), which is twice as much at rest, and drag v2 / (h (ln(h / R) / kappa + "
+          "B)2) of flow of thickness h.");
+    s.key("samosat_fluidization", "", &MaterialSpec::samosat_fluidization, between(0, 1000),
+          "Rs0 of samosAT: rho v2 over the normal stress, at which friction is 1.5 friction_coefficient; 0: it is "
+          "friction_coefficient at every speed.")
+        .also_called({"rs0", "rs0_samosat"});
+    s.key("samosat_karman", "", &MaterialSpec::samosat_karman, between(0.01, 10), "kappa of samosAT.")
+        .also_called({"kappa", "kappa_samosat"});
+    s.key("samosat_roughness_m", "m", &MaterialSpec::samosat_roughness, between(0.0001, 100),
+          "R of samosAT, the roughness of the ground; drag of thinner flow is that of flow as thick.")
+        .also_called({"r_samosat"});
+    s.key("samosat_offset", "", &MaterialSpec::samosat_offset, between(0.1, 100), "B of samosAT.")
+        .also_called({"b_samosat"});
+}
+
+/// Of two laws for the same drag: the key of the other one, if it is given.
+std::optional<Violation> beside_samosat(bool given, const char* key) {
+    if (!given) return {};
+    return Violation{key,
+                     ": is given beside material.samosat = true, which has a drag of its own; leave one of them out"};
+}
+
+std::optional<Violation> contradicts_samosat(const MaterialSpec& material) {
+    if (!material.samosat) {
+        const MaterialSpec published;
+        for (const auto& [constant, key] : {std::pair{&MaterialSpec::samosat_fluidization, "samosat_fluidization"},
+                                            {&MaterialSpec::samosat_karman, "samosat_karman"},
+                                            {&MaterialSpec::samosat_roughness, "samosat_roughness_m"},
+                                            {&MaterialSpec::samosat_offset, "samosat_offset"}}) {
+            if (material.*constant == published.*constant) continue;
+            return Violation{
+                key, fmt::format(" = {} has no effect while samosat = false; set samosat = true or leave it out",
+                                 material.*constant)};
+        }
+        return {};
+    }
+    const double viscosity = material.laminar_viscosity.value_or(0);
+    const double dynamic_viscosity = material.laminar_dynamic_viscosity.value_or(0);
+    for (const auto& [given, key] : {std::pair{material.turbulent_friction.has_value(), "turbulent_friction_mps2"},
+                                     {viscosity > 0, "laminar_viscosity_m2ps"},
+                                     {dynamic_viscosity > 0, "laminar_viscosity_Pas"},
+                                     {material.viscosity_on_ground, "viscosity_on_ground"}}) {
+        if (auto both = beside_samosat(given, key)) return both;
+    }
+    return {};
+}
+
 }  // namespace
 
 Section declare_material() {
@@ -74,13 +128,13 @@ Section declare_material() {
           "apart.")
         .assumes("Coulomb friction on the ground")
         .live_as()
-        .also_called({"mu", "friction", "tan_phi", "basal_friction", "mu_coulomb", "mu_voellmy"});
+        .also_called({"mu", "friction", "tan_phi", "basal_friction", "mu_coulomb", "mu_voellmy", "mu_samosat"});
     s.optional_key("building_friction_coefficient", "", &MaterialSpec::building_friction_coefficient, between(0, 10),
                    "equal to friction_coefficient", "Coulomb friction on the walls and roofs of buildings.")
         .assumes("Coulomb friction on walls and roofs")
         .live_as();
     s.optional_key("internal_friction_coefficient", "", &MaterialSpec::internal_friction_coefficient, between(0, 10),
-                   "equal to friction_coefficient", "Coulomb friction of debris on debris.")
+                   "equal to friction_coefficient, with samosat twice that", "Coulomb friction of debris on debris.")
         .assumes("Internal friction")
         .live_as()
         .also_called({"internal_friction", "tan_phi_internal"});
@@ -94,8 +148,9 @@ Section declare_material() {
                    "what viscosity amounts to at this particle spacing",
                    "Viscosity of the debris, in place of viscosity.");
     declare_resistance(s);
+    declare_samosat(s);
     s.rule([](const MaterialSpec& material, const SceneSpec&, double) -> std::optional<Violation> {
-        const double slow = material.internal_friction_coefficient.value_or(material.friction_coefficient);
+        const double slow = internal_friction_of(material);
         if (material.inertial_friction_coefficient.value_or(slow) >= slow) return {};
         return Violation{"inertial_friction_coefficient",
                          fmt::format(" = {} is refused; it must be at least the internal friction of slow shear, {}",
@@ -112,6 +167,7 @@ Section declare_material() {
             " = true is refused beside laminar drag, which is the same viscosity over the whole depth; leave "
             "one of them out"};
     });
+    s.rule([](const MaterialSpec& material, const SceneSpec&, double) { return contradicts_samosat(material); });
     return s.take();
 }
 
@@ -192,6 +248,16 @@ Section declare_zone() {
                          fmt::format(" = {} is refused beside material.viscosity_on_ground = true, which is the same "
                                      "viscosity; leave one of them out",
                                      *zone.laminar_viscosity)};
+    });
+    s.rule([](const ZoneSpec& zone, const SceneSpec& spec, double) -> std::optional<Violation> {
+        if (!spec.material.samosat) return {};
+        if (zone.raster_holds == ZoneRaster::turbulent_friction) {
+            return Violation{"raster_holds",
+                             " = \"turbulent_friction_mps2\" is refused beside material.samosat = true, which has a "
+                             "drag of its own; leave one of them out"};
+        }
+        if (auto both = beside_samosat(zone.turbulent_friction.has_value(), "turbulent_friction_mps2")) return both;
+        return beside_samosat(zone.laminar_viscosity.value_or(0) > 0, "laminar_viscosity_m2ps");
     });
     s.rule([](const ZoneSpec& zone, const SceneSpec&, double) -> std::optional<Violation> {
         if (zone.friction_coefficient || zone.turbulent_friction || zone.laminar_viscosity || zone.cohesion ||

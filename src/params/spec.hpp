@@ -155,7 +155,7 @@ struct MaterialSpec {
     double friction_coefficient = 0.4;                    ///< on ground, and on buildings and inside unless set
                                                           ///< separately
     std::optional<double> building_friction_coefficient;  ///< absent: equal to friction_coefficient
-    std::optional<double> internal_friction_coefficient;  ///< absent: equal to friction_coefficient
+    std::optional<double> internal_friction_coefficient;  ///< absent: see internal_friction_of()
     double viscosity = 0.1;                               ///< XSPH smoothing per 1/60 s, 0 to below 1
     std::optional<double> kinematic_viscosity;            ///< m2/s, in place of `viscosity`
     bool viscosity_on_ground = false;                     ///< viscosity also acts between debris and ground
@@ -171,7 +171,18 @@ struct MaterialSpec {
     double inertial_number = 0.279;  ///< I_0, at which friction is halfway between its slow and fast values
     double grain_diameter = 0.01;    ///< m
     double grain_density = 2650;     ///< kg/m3
+    bool samosat = false;            ///< friction of samosAT on the ground; the next four are its constants
+    double samosat_fluidization = 0.222;
+    double samosat_karman = 0.43;
+    double samosat_roughness = 0.05;  ///< m
+    double samosat_offset = 4.13;
 };
+
+/// Internal friction where a scene gives none is that on the ground at rest, or debris would shear above it.
+[[nodiscard]] inline double internal_friction_of(const MaterialSpec& material) {
+    const double at_rest = material.samosat && material.samosat_fluidization > 0 ? 2 : 1;
+    return material.internal_friction_coefficient.value_or(at_rest * material.friction_coefficient);
+}
 
 /// Kinematic viscosity of laminar drag, m2/s; 0: none.
 [[nodiscard]] inline double laminar_viscosity_of(const MaterialSpec& material) {

@@ -58,6 +58,11 @@ void add_resistances(Json& rows, const scene::Scene& scene) {
         add("Laminar drag",
             fmt::format("ν = {} m²/s, {} Pa s", significant(nu, 3), significant(nu * material.rest_density, 3)));
     }
+    if (material.samosat) {
+        add("samosAT", fmt::format("R_s0 = {}, κ = {}, R = {} m, B = {}", plain(material.samosat_fluidization),
+                                   plain(material.samosat_karman), plain(material.samosat_roughness),
+                                   plain(material.samosat_offset)));
+    }
     if (material.cohesion > 0) add("Cohesion", fmt::format("{} Pa", plain(material.cohesion)));
     for (const params::ReleaseSpec& release : scene.spec.releases) {
         const double ratio = release.pore_pressure_ratio.value_or(material.pore_pressure_ratio);
@@ -128,8 +133,7 @@ Json chosen_values(const scene::Scene& scene, const run::RunResult& result) {
     add("Friction on the ground", fmt::format("f = {}", plain(material.friction_coefficient)));
     add("Friction on buildings",
         fmt::format("f = {}", plain(material.building_friction_coefficient.value_or(material.friction_coefficient))));
-    add("Friction inside",
-        fmt::format("f = {}", plain(material.internal_friction_coefficient.value_or(material.friction_coefficient))));
+    add("Friction inside", fmt::format("f = {}", plain(params::internal_friction_of(material))));
     const std::string smoothing =
         material.kinematic_viscosity ? significant(result.viscosity, 3) : plain(material.viscosity);
     add("Viscosity, as smoothing", fmt::format("μ = {} per 1/60 s", smoothing));
@@ -265,6 +269,7 @@ Json method(const scene::Scene& scene) {
             {"laminar_drag", params::laminar_viscosity_of(material) > 0 || any_zone([](const params::ZoneSpec& zone) {
                                  return zone.laminar_viscosity.value_or(0) > 0;
                              })},
+            {"samosat", static_cast<bool>(material.samosat)},
             {"cohesion", material.cohesion > 0},
             {"pore_pressure",
              has_pore_pressure(scene.spec) ? Json{{"decay_time_s", given(material.pore_pressure_decay_time)}} : Json()},

@@ -28,10 +28,6 @@ namespace {
 
 constexpr std::uint64_t steps_between_good_grids = 64;  // a look at all cells takes less than a step
 
-double internal_friction(const params::MaterialSpec& material) {
-    return material.internal_friction_coefficient.value_or(material.friction_coefficient);
-}
-
 double volume_of(const std::vector<terrain::Release>& releases) {
     double sum = 0;
     for (const terrain::Release& release : releases) sum += release.volume;
@@ -108,7 +104,8 @@ class GridRun {
           solver_(ground_.bed, depth::material_of(scene.spec.material), ground_.values),
           inflows_(solver_, scene.inflows),
           inflow_energy_(solver_, scene.inflows),
-          friction_inside_(solver_, inside == Inside::as_particles ? internal_friction(scene.spec.material) : 0),
+          friction_inside_(solver_,
+                           inside == Inside::as_particles ? params::internal_friction_of(scene.spec.material) : 0),
           bed_(grid_bed(scene, ground_)),
           observer_(solver_, scene.flow_path, scene.spec.outputs, watched_structures(solver_, scene, ground_),
                     volume_of(scene.releases)),

@@ -37,9 +37,12 @@ double slide(const sim::Model& model, const sim::Ground& ground, SlidingBlock& b
     v = v * (speed / std::max(length(v), 1e-9));
     v = v + (n * n.z - Vec3<double>{0, 0, 1}) * (model.gravity * time_step);
     v = sim::slowed_by_drag(model, resistance, below, 0.0, block.thickness, v, time_step);
-    const double friction = resistance.friction_coefficient * effective_share * model.gravity * n.z +
+    const double before = length(v), weight = model.gravity * n.z;
+    const double rise =
+        model.samosat.on ? sim::slow_share(model.samosat.fluidization, weight * block.thickness, before * before) : 0;
+    const double friction = resistance.friction_coefficient * (1 + rise) * effective_share * weight +
                             resistance.cohesion / (model.rest_density * block.thickness);
-    const double before = length(v), after = std::max(0.0, before - friction * time_step);
+    const double after = std::max(0.0, before - friction * time_step);
     block.velocity = before > 0 ? v * (after / before) : Vec3<double>{};
     block.position.x += block.velocity.x * time_step;
     block.position.y += block.velocity.y * time_step;

@@ -10,6 +10,7 @@
 #include "params/time_step.hpp"
 #include "sim/physics/boundary_table.hpp"
 #include "sim/physics/kernel.hpp"
+#include "sim/physics/samosat.hpp"
 #include "terrain/ground_cover.hpp"
 
 namespace talus::sim {
@@ -48,6 +49,7 @@ struct ModelValues {
     double pore_pressure_ratio = 0;       ///< r_u, at the start of a release
     double pore_pressure_decay_time = 0;  ///< s; 0: constant
     InertialFriction inertial_friction;   ///< inside
+    Samosat samosat;                      ///< on the ground
     double gravity = 9.80665;             ///< m/s2
 
     Kernel kernel;  ///< density and gradient, with the calibrated particle volume folded in

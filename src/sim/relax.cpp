@@ -52,6 +52,7 @@ Model without_forces(const Model& model) {
     still.friction_coefficient = still.building_friction_coefficient = still.internal_friction_coefficient = 0;
     still.turbulent_friction = still.laminar_viscosity = still.cohesion = 0;
     still.inertial_friction = {};
+    still.samosat = {};
     still.cover = {};
     still.solver.internal_friction = params::InternalFriction::pair;
     return still;

@@ -23,7 +23,8 @@ Result<scene::Zone> read_zone(const nlohmann::json& action, const ActionContext&
     }
     const terrain::Terrain& terrain = context.scene.terrain;
     TALUS_TRY(redraw(drawn, terrain, false, zone.outline));
-    TALUS_TRY(check_rules(zone.spec, context.scene.spec.solver, context.particle_spacing));
+    const params::SceneSpec& spec = context.scene.spec;
+    TALUS_TRY(check_rules(zone.spec, spec.solver, context.particle_spacing, spec.material));
     if (!(area_of(zone, terrain.elevation().geometry) > 0)) {
         return Error{fmt::format("{}: {}", drawn.key, scene::covers_no_cell(terrain))};
     }

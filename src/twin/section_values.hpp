@@ -73,11 +73,13 @@ template <class Spec>
     return read;
 }
 
-/// The rules of the section, in a scene with this solver and particles of this spacing, m.
+/// The rules of the section, in a scene with this solver, particles of this spacing, m, and this material.
 template <class Spec>
-[[nodiscard]] Status check_rules(const Spec& entry, const params::SolverSpec& solver, double particle_spacing) {
+[[nodiscard]] Status check_rules(const Spec& entry, const params::SolverSpec& solver, double particle_spacing,
+                                 const params::MaterialSpec& material = {}) {
     params::SceneSpec spec = scene_with(entry);
     spec.solver = solver;
+    spec.material = material;
     return check_live_rules(params::live_section(params::section_of<Spec>.first), spec, particle_spacing);
 }
 

@@ -174,7 +174,8 @@ double value_in_force(const params::MaterialSpec& material, const params::Parame
     if (const double* number = std::get_if<double>(&value)) return *number;
     if (parameter.key == "laminar_viscosity_m2ps") return params::laminar_viscosity_of(material);
     if (parameter.key == "turbulent_friction_mps2") return std::numeric_limits<double>::quiet_NaN();
-    return material.friction_coefficient;  // both other optional ones follow it
+    if (parameter.key == "internal_friction_coefficient") return params::internal_friction_of(material);
+    return material.friction_coefficient;  // that of buildings follows it
 }
 
 }  // namespace talus::twin

@@ -135,6 +135,16 @@ double SheetFlow::with_drag(double friction, double turbulent_friction, double v
     return 2 * driving / (linear + std::sqrt(linear * linear + 4 * square * driving));
 }
 
+double SheetFlow::with_samosat(double friction, double fluidization, double drag) const {
+    // (g h sin - f N - drag w) (R_s0 N + w) = f N R_s0 N, of w = v^2 and N = g h cos.
+    const double normal = gravity * thickness * std::cos(slope), scale = fluidization * normal;
+    const double driving = gravity * thickness * std::sin(slope) - friction * normal;
+    const double linear = driving / drag - scale,
+                 root = linear * linear + 4 * scale * (driving - friction * normal) / drag;
+    if (driving <= 0 || root < 0) return 0;
+    return std::sqrt(std::max(0.0, (linear + std::sqrt(root)) / 2));
+}
+
 double SheetFlow::bingham(double height, double yield, double viscosity) const {
     const double drive = gravity * std::sin(slope);
     const double sheared = std::max(0.0, thickness - yield / drive), z = std::min(height, sheared);

@@ -77,6 +77,9 @@ struct SheetFlow {
     /// With Coulomb friction, turbulent drag g v^2 / (xi h) (Voellmy 1955; xi = 0: none) and laminar drag 3 nu v / h^2
     /// (Nusselt 1916), the same at every height; 0 where friction holds it.
     [[nodiscard]] double with_drag(double friction, double turbulent_friction, double viscosity) const;
+    /// With the friction of samosAT (sim/physics/samosat.hpp), the same at every height: the faster of the two speeds
+    /// at which it balances gravity, or the only one; 0 where there is none. `drag`: its stress over rho v^2.
+    [[nodiscard]] double with_samosat(double friction, double fluidization, double drag) const;
     /// Of a Bingham fluid that sticks to the ground: sheared below the height at which the shear stress falls to the
     /// yield stress, a plug above. `yield`: stress over density, m2/s2; `viscosity`: kinematic, m2/s.
     [[nodiscard]] double bingham(double height, double yield, double viscosity) const;

@@ -2,6 +2,7 @@
 #include <cstddef>
 #include <limits>
 
+#include "depth/formulas.hpp"
 #include "grids.hpp"
 
 namespace talus::test {
@@ -90,6 +91,62 @@ TEST(Sheet, reaches_the_speed_of_bingham) {
     material.viscosity = 0.3;
     material.cohesion = 1.01 * stress;
     EXPECT_EQ(sheet_speed(slope, thickness, 10, material), 0);
+}
+
+depth::Material snow() {
+    depth::Material material;
+    material.friction_coefficient = 0.155;
+    material.samosat = {true, 0.222, 0.43, 0.05, 4.13};
+    return material;
+}
+
+TEST(Sheet, reaches_the_speed_of_samosat) {
+    // h = 0.8 m: ln 16 / 0.43 + 4.13 = 10.577951, its square 111.89305.
+    const double thickness = 0.8, square = 111.89305;
+    for (const double slope : {0.35, 0.5}) {
+        const double normal = gravity * thickness * std::cos(slope);
+        const double exact = sheet_speed(slope, thickness, 20, snow()), rs = exact * exact / normal;
+        const double friction = 0.155 * normal * (1 + 0.222 / (0.222 + rs)), drag = exact * exact / square;
+        EXPECT_NEAR((friction + drag) / (normal * std::tan(slope)), 1, 2e-3) << slope;
+    }
+}
+
+TEST(Sheet, of_samosat_stays_below_twice_its_friction) {
+    EXPECT_EQ(sheet_speed(std::atan(0.30), 0.5, 5, snow()), 0);
+    EXPECT_EQ(sheet_speed(std::atan(0.30), 0.002, 5, snow()), 0) << "however thin it is";
+    EXPECT_GT(sheet_speed(std::atan(0.32), 0.5, 5, snow()), 0.1);
+    depth::Material even = snow();
+    even.samosat.fluidization = 0;
+    EXPECT_GT(sheet_speed(std::atan(0.30), 0.5, 5, even), 0.1) << "friction is the same at rest";
+}
+
+TEST(Samosat, is_implicit_and_stops_debris_without_reversing_it) {
+    depth::Resistance<double> r{};
+    r.friction = 0.155;
+    r.fluidization = 0.222;
+    for (const double depth : {1e-4, 0.01, 1.0}) {
+        r.inverse_turbulence = 1 / (gravity * 60);
+        const double normal = gravity * depth * 0.8, stretch = 1 / std::sqrt(0.8);
+        for (const double dt : {0.001, 0.1, 10.0}) {
+            const auto after = [&](double momentum) {
+                return depth::resisted(r, gravity, momentum, depth, normal, stretch, dt);
+            };
+            const double holds = dt * stretch * 2 * 0.155 * normal;
+            EXPECT_EQ(after(0), 0);
+            EXPECT_EQ(after(0.999 * holds), 0) << "friction at rest stops it";
+            for (const double momentum : {1.5 * holds, 10 * holds, 1000 * depth}) {
+                if (momentum <= holds) continue;
+                const double left = after(momentum), speed = left / depth;
+                EXPECT_GT(left, 0);
+                EXPECT_LT(left, momentum);
+                const double friction = 0.155 * (1 + 0.222 * normal / (0.222 * normal + speed * speed));
+                const double taken = dt * stretch * (friction * normal + speed * speed / 60);
+                EXPECT_NEAR(left + taken, momentum, 0.01 * momentum) << depth << ", " << dt;
+            }
+        }
+    }
+    r.fluidization = 0.222;
+    EXPECT_EQ(depth::resisted(r, gravity, 0.5, 0.0, 0.0, 1.0, 0.1) >= 0, true) << "no depth, no weight";
 }
 
 TEST(Sheet, is_relieved_by_pore_pressure) {

@@ -185,6 +185,12 @@ TEST(Report, OfADepthAveragedRunSaysNothingThatOnlyParticlesHave) {
         const std::size_t at = words.find(part);
         EXPECT_EQ(at, std::string::npos) << (at == std::string::npos ? "" : words.substr(at < 80 ? 0 : at - 80, 160));
     }
+    s.scene.spec.material.turbulent_friction.reset();
+    s.scene.spec.material.samosat = true;
+    const std::string snow = words_of(s.html());
+    EXPECT_TRUE(has(snow, "Sampl & Granig 2009") || has(snow, "Sampl &amp; Granig 2009"));
+    EXPECT_TRUE(has(snow, "R_s0 = 0.222, κ = 0.43, R = 0.05 m, B = 4.13"));
+    EXPECT_FALSE(has(snow, "Voellmy 1955"));
     for (const char* part : {"cells are 2.5 m wide", "Speed of the flow", "ξ = 470 m/s²", "HLL", "Voellmy 1955",
                              "averaged over 0.2", "Over the crest", "Retained at the end"}) {
         EXPECT_TRUE(has(words, part)) << part;

@@ -70,6 +70,28 @@ TEST_F(Zones, ViscosityIsGivenOnceOnly) {
                 HasSubstr("zone[0].laminar_viscosity_m2ps = 0.04 is refused"));
 }
 
+TEST_F(Zones, SamosatHasNoOtherDragBesideIt) {
+    const std::string snow = "[material]\nsamosat = true\n", zone =
+                                                                 "[[zone]]\npolygon = \"824100 825050, 824150 825050, "
+                                                                 "824150 825100\"\n";
+    loaded(snow + "samosat_roughness_m = 0.1\ncohesion_Pa = 20\n" + zone + "friction_coefficient = 0.2\n");
+    for (const char* other : {"turbulent_friction_mps2 = 1000", "laminar_viscosity_m2ps = 0.1",
+                              "laminar_viscosity_Pas = 100", "viscosity_on_ground = true"}) {
+        const std::string key(other, std::string(other).find(' '));
+        EXPECT_THAT(refusal(snow + other + "\n"),
+                    HasSubstr("material." + key + ": is given beside material.samosat = true"));
+    }
+    EXPECT_THAT(refusal(snow + zone + "turbulent_friction_mps2 = 1000\n"),
+                HasSubstr("zone[0].turbulent_friction_mps2: is given beside material.samosat = true"));
+    EXPECT_THAT(refusal(snow + zone + "laminar_viscosity_m2ps = 0.1\n"),
+                HasSubstr("zone[0].laminar_viscosity_m2ps: is given beside material.samosat = true"));
+    EXPECT_THAT(refusal(snow + "[[zone]]\nraster = \"xi.tif\"\nraster_holds = \"turbulent_friction_mps2\"\n"),
+                HasSubstr("is refused beside material.samosat = true"));
+    EXPECT_THAT(refusal("[material]\nsamosat_roughness_m = 0.1\n"),
+                HasSubstr("samosat_roughness_m = 0.1 has no effect while samosat = false"));
+    EXPECT_THAT(refusal(snow + "samosat_karman = 0\n"), HasSubstr("0.01 to 10"));
+}
+
 TEST_F(Zones, LaterOnesGoBeforeEarlierOnesWhereTheySaySomething) {
     write_features("forest.geojson", {rectangle(100, 50, 200, 150)});
     const Scene scene = loaded(

@@ -139,6 +139,14 @@ params::MaterialSpec everything() {
     return material;
 }
 
+params::MaterialSpec snow() {
+    params::MaterialSpec material;
+    material.samosat = true;
+    material.friction_coefficient = 0.155;
+    material.pore_pressure_ratio = 0.2;
+    return material;
+}
+
 /// Across the debris's way, just before the building.
 terrain::Building net_on(const terrain::Terrain& terrain) {
     const auto net = make_barrier(terrain, "net", {{{20.4, 16}, {20.4, 24}}, 2, {}, 0.3, {}, 0.5});
@@ -231,6 +239,10 @@ TEST_P(InstructionSet, agrees_with_the_reference_for_every_resistance) {
                      everything(), true);
 }
 
+TEST_P(InstructionSet, agrees_with_the_reference_for_samosat) {
+    expect_agreement(backend, params::InternalFriction::stress, params::KernelChoice::wendland_c2, 12, 2e-4, snow());
+}
+
 TEST_P(InstructionSet, agrees_with_the_reference_for_a_net) {
     expect_agreement(backend, params::InternalFriction::stress, params::KernelChoice::wendland_c2, 12, 2e-4, {}, false,
                      true);
@@ -271,6 +283,8 @@ TEST_P(FasterInstructionSet, gives_the_same_bits_as_the_baseline) {
     }
     EXPECT_EQ(hash_after(GetParam(), params::InternalFriction::stress, everything()),
               hash_after(baseline, params::InternalFriction::stress, everything()));
+    EXPECT_EQ(hash_after(GetParam(), params::InternalFriction::stress, snow()),
+              hash_after(baseline, params::InternalFriction::stress, snow()));
     EXPECT_NE(hash_after(GetParam(), params::InternalFriction::stress, everything()),
               hash_after(GetParam(), params::InternalFriction::stress));
 }

@@ -115,6 +115,19 @@ TEST(Zone, changes_by_the_keys_of_a_scene_and_says_what_it_holds) {
     EXPECT_EQ(scenario->setup_json()["zones"].size(), 0U);
 }
 
+TEST(Zone, has_no_drag_of_its_own_beside_samosat) {
+    scene::Scene scene = channel_scene();
+    scene.spec.material.samosat = true;
+    const auto scenario = open(std::move(scene));
+    json zone = rough_zone();
+    zone["turbulent_friction_mps2"] = 500;
+    EXPECT_THAT(refusal(*scenario, zone), HasSubstr("is given beside material.samosat = true"));
+    EXPECT_THAT(
+        refusal(*scenario, {{"action", "set_parameter"}, {"key", "material.turbulent_friction_mps2"}, {"value", 500}}),
+        HasSubstr("is given beside material.samosat = true"));
+    act(*scenario, rough_zone());
+}
+
 TEST(Zone, refusals_name_key_value_and_what_is_allowed) {
     const auto scenario = open(channel_scene());
     const auto with = [](json action, const char* key, const json& value) {

@@ -30,6 +30,17 @@ TEST(SheetFlow, HasTheVelocitiesOfItsLaws) {
     const SheetFlow sheet{30 * degrees, 2, gravity};
     EXPECT_NEAR(sheet.with_drag(0.2, 500, 0), std::sqrt(1000 * (0.5 - 0.2 * 0.8660254)), 1e-6);
     EXPECT_EQ(sheet.with_drag(0.6, 500, 0), 0);
+    // samosAT, of 2 m with a drag of rho v^2 / 100: what it takes is what gravity gives, also where it can stand as
+    // well.
+    for (const double slope : {30 * degrees, 12 * degrees}) {
+        const SheetFlow snow{slope, 2, gravity};
+        const double speed = snow.with_samosat(0.155, 0.222, 0.01), normal = 2 * gravity * std::cos(slope);
+        const double share = 0.222 / (0.222 + speed * speed / normal);
+        EXPECT_NEAR(0.155 * (1 + share) * normal + 0.01 * speed * speed, 2 * gravity * std::sin(slope), 1e-9);
+        EXPECT_GT(speed, 4) << "the faster of the two";
+    }
+    EXPECT_NEAR(sheet.with_samosat(0.2, 0, gravity / 500), sheet.with_drag(0.2, 500, 0), 1e-9);
+    EXPECT_EQ(sheet.with_samosat(0.6, 0.222, 0.01), 0);
     // A yield stress of half the weight's pull: the upper half is a plug.
     const double yield = gravity * 0.5, viscosity = 0.3;
     EXPECT_NEAR(sheet.bingham(0.5, yield, viscosity), gravity * 0.5 / 0.3 * (0.5 - 0.125), 1e-9);

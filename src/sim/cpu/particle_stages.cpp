@@ -94,12 +94,9 @@ TALUS_STAGE void resist(const StageData& data, std::size_t first, std::size_t la
         }
         const V3 p = load(state.position, i), velocity = load(state.velocity, i);
         const GroundResistance<L> ground = ground_resistance(model, p);
-        L friction = ground.friction_coefficient;
+        const L friction = moving_friction(model, data.ground.terrain, ground.friction_coefficient, p, velocity,
+                                           load(state.multiplier, i) * pressure_scale, share, L(state.time_step));
         if (model.inertial_friction.on) {
-            const terrain::GroundSample<L> below = data.ground.terrain.sample(p.x, p.y);
-            const L speed = length(velocity - below.normal * dot(velocity, below.normal));
-            friction = friction_beside_ground(model, friction, speed, (p.z - below.height) * below.normal.z,
-                                              load(state.multiplier, i) * pressure_scale * share);
             store(shear_beside_ground(model, ground.friction_coefficient), work.ground_shear, i);
         }
         store(share, work.effective_share, i);

@@ -112,7 +112,7 @@ struct Begin {
 /// Resistance of every particle, where it varies between them.
 struct Resist {
     Data d;
-    float strength{}, pressure_scale{};
+    float strength{}, pressure_scale{}, time_step{};
     double time{};
 
     TALUS_DEVICE void operator()(std::uint32_t i) const {
@@ -120,13 +120,9 @@ struct Resist {
         const LocalPoint p = d.state.position[i], velocity = d.state.velocity[i];
         const GroundResistance<float> ground = ground_resistance(d.model, p);
         Resistance result;
-        result.friction = ground.friction_coefficient;
+        result.friction = moving_friction(d.model, d.ground.terrain, ground.friction_coefficient, p, velocity,
+                                          d.state.multiplier[i] * pressure_scale, share, time_step);
         if (d.model.inertial_friction.on) {
-            const terrain::GroundSample<float> below = d.ground.terrain.sample(p.x, p.y);
-            const float speed = length(velocity - below.normal * dot(velocity, below.normal));
-            result.friction =
-                friction_beside_ground(d.model, result.friction, speed, (p.z - below.height) * below.normal.z,
-                                       d.state.multiplier[i] * pressure_scale * share);
             result.ground_shear = shear_beside_ground(d.model, ground.friction_coefficient);
         }
         result.effective_share = share;

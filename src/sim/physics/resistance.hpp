@@ -6,6 +6,7 @@
 #include "core/geometry.hpp"
 #include "sim/ground.hpp"
 #include "sim/model.hpp"
+#include "sim/physics/samosat.hpp"
 #include "sim/physics/stress.hpp"
 
 /// Resistance other than Coulomb friction and viscosity: speed-dependent drag, cohesion, pore pressure, zones.
@@ -13,7 +14,7 @@ namespace talus::sim {
 
 /// Whether there is speed-dependent drag.
 inline bool slows_by_speed(const Model& model) {
-    return model.turbulent_friction > 0 || model.laminar_viscosity > 0 || model.cover.drags();
+    return model.turbulent_friction > 0 || model.laminar_viscosity > 0 || model.samosat.on || model.cover.drags();
 }
 
 /// Whether there is pore pressure anywhere.
@@ -25,7 +26,8 @@ inline bool has_pore_pressure(const Model& model) {
 
 /// Whether resistance is more than the model's three friction coefficients, and must be evaluated for every particle.
 inline bool resists_by_particle(const Model& model) {
-    return !model.cover.empty() || model.cohesion > 0 || has_pore_pressure(model) || model.inertial_friction.on;
+    return !model.cover.empty() || model.cohesion > 0 || has_pore_pressure(model) || model.inertial_friction.on ||
+           model.samosat.on;
 }
 
 /// When the release that a particle belongs to starts, s; 0: it came in another way.
@@ -96,6 +98,28 @@ TALUS_DEVICE Real friction_beside_ground(const AnyModel& model, Real friction, R
     return smaller(
         friction, inertial_friction(Real(model.internal_friction_coefficient), Real(inertial.rise), Real(inertial.half),
                                     Real(inertial.grain_size), shear, larger(Real(0), pressure)));
+}
+
+/// Friction on the ground below a particle where it depends on the motion: the coefficient of samosAT, at most the
+/// strength of debris with the mu(I) law. `velocity`: after the step's gravity; `pressure`: at the particle, over
+/// density, m2/s2; `share`: of it, borne by the grains.
+///
+/// samosAT's stress is that on the ground: the pressure at the particle and the weight below it. Debris a few particles
+/// thick bears no pressure most of the time, so that it is at least the weight of the particle.
+template <class Real, class AnyModel, class AnyTerrain>
+TALUS_DEVICE Real moving_friction(const AnyModel& model, const AnyTerrain& terrain, Real friction, const Vec3<Real>& p,
+                                  const Vec3<Real>& velocity, Real pressure, Real share, Real time_step) {
+    if (!model.inertial_friction.on && !model.samosat.on) return friction;
+    const terrain::GroundSample<Real> below = terrain.sample(p.x, p.y);
+    const auto speed_along = [&](const Vec3<Real>& v) { return length(v - below.normal * dot(v, below.normal)); };
+    const Real speed = speed_along(velocity), distance = (p.z - below.height) * below.normal.z;
+    if (model.samosat.on) {
+        const Real gravity(model.gravity), weight = gravity * below.normal.z;
+        const Real stress = larger(pressure + weight * distance, weight * Real(model.particle_spacing));
+        const Real before = speed_along({velocity.x, velocity.y, velocity.z + gravity * time_step});
+        friction = friction * (Real(1) + slow_share(Real(model.samosat.fluidization), stress, before * before));
+    }
+    return friction_beside_ground(model, friction, speed, distance, pressure * share);
 }
 
 /// The factor on a particle's displacement by which the ground shears debris with the mu(I) law: zero if the ground is
@@ -214,6 +238,7 @@ TALUS_DEVICE Real drag_loss(const Real& linear, const Real& square) {
 ///   the whole column; applied to the lowest layer alone, debris would shear off above it wherever internal friction
 ///   is less than the slope. Debris more than a spacing above the flow's thickness is airborne and not affected. xi may
 ///   depend on the thickness (see turbulence_at).
+/// - samosAT: Voellmy's with the xi of the thickness (see wall_drag).
 /// - Laminar flow over ground that holds it: the stress 3 rho nu v / h below a parabolic profile (Nusselt 1916, "Die
 ///   Oberflaechenkondensation des Wasserdampfes"), distributed in the same way, as 3 nu v / h^2. It is the viscous
 ///   term K eta v / (8 rho h^2) of the quadratic rheology (O'Brien, Julien & Fullerton 1993, "Two-dimensional water
@@ -226,7 +251,8 @@ template <class Real, class AnyModel>
 TALUS_DEVICE Vec3<Real> slowed_by_drag(const AnyModel& model, const GroundResistance<Real>& ground,
                                        const terrain::GroundSample<Real>& below, Real distance, Real thickness,
                                        const Vec3<Real>& velocity, Real time_step) {
-    const Real turbulence = ground.inverse_turbulent_friction * turbulence_at(model, thickness);
+    const Real turbulence = model.samosat.on ? wall_drag(model.samosat, thickness) * Real(1 / model.gravity)
+                                             : ground.inverse_turbulent_friction * turbulence_at(model, thickness);
     const auto in_flow = distance <= thickness + Real(model.particle_spacing);
     const Real turbulent = select(in_flow, turbulence * Real(model.gravity) / thickness, Real(0));
     const Real laminar = select(in_flow, Real(3) * ground.laminar_viscosity / (thickness * thickness), Real(0));

@@ -135,12 +135,10 @@ void Backend::prepare_particles(const Model& model, const Ground& ground, State&
         Particle& p = state.particles[id];
         p.effective_share = effective_share(model, state.entry_of_id, id, state.time);
         const GroundResistance<double> resistance = ground_resistance(model, p.position);
-        const terrain::GroundSample<double> below = ground.terrain.sample(p.position.x, p.position.y);
-        const double speed = length(p.velocity - below.normal * dot(p.velocity, below.normal));
         const double before = state.previous_time_step;
-        const double pressure = before > 0 ? -p.multiplier / (before * before) * p.effective_share : 0;
-        const double friction = friction_beside_ground(model, resistance.friction_coefficient, speed,
-                                                       (p.position.z - below.height) * below.normal.z, pressure);
+        const double pressure = before > 0 ? -p.multiplier / (before * before) : 0;
+        const double friction = moving_friction(model, ground.terrain, resistance.friction_coefficient, p.position,
+                                                p.velocity, pressure, p.effective_share, state.time_step);
         p.ground_shear = model.inertial_friction.on ? shear_beside_ground(model, resistance.friction_coefficient) : 0;
         p.grip = {friction * p.effective_share, model.building_friction_coefficient * p.effective_share,
                   resistance.cohesion * strength_per_pascal(model, state.time_step)};

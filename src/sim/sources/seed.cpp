@@ -149,8 +149,7 @@ void set_material(Model& model, const params::MaterialSpec& material) {
     model.friction_coefficient = material.friction_coefficient;
     model.building_friction_coefficient =
         material.building_friction_coefficient.value_or(material.friction_coefficient);
-    model.internal_friction_coefficient =
-        material.internal_friction_coefficient.value_or(material.friction_coefficient);
+    model.internal_friction_coefficient = params::internal_friction_of(material);
     model.viscosity = material.kinematic_viscosity
                           ? smoothing_viscosity(*material.kinematic_viscosity, model.kernel.second_moment)
                           : material.viscosity;
@@ -169,6 +168,7 @@ void set_material(Model& model, const params::MaterialSpec& material) {
             material.inertial_number,
             material.grain_diameter * std::sqrt(material.grain_density / material.rest_density)};
     }
+    model.samosat = samosat_of(material);
 }
 
 Model make_model(const params::MaterialSpec& material, const params::SolverSpec& solver, double particle_spacing,

@@ -60,9 +60,7 @@ terrain::Release make_cone(const terrain::Terrain& terrain, double radius, doubl
 
 Measured measure(const HeapSpec& spec, double share, double time_step, const Setting& setting, const Watch& watch) {
     Measured measured;
-    const double angle =
-        share *
-        std::atan(setting.material.internal_friction_coefficient.value_or(setting.material.friction_coefficient));
+    const double angle = share * std::atan(params::internal_friction_of(setting.material));
     const double height = spec.height * spec.spacing, radius = height / std::tan(angle);
     const Incline flat(0, 6 * radius, 6 * radius);
     params::SolverSpec solver = setting.solver;
