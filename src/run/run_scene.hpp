@@ -20,7 +20,7 @@ struct Progress {
     double real_time_factor;
     double front_chainage;  ///< m, farthest so far along the scene's path; NaN: none
     double share_done;      ///< 0 to 1
-    double wall_remaining;  ///< s, estimate
+    double wall_remaining;  ///< s, estimate; NaN: too little is done to say
     std::uint64_t step;
     std::uint32_t particles;
 };
