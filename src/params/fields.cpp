@@ -63,11 +63,15 @@ Section declare_report() {
 }
 
 Section declare_terrain() {
-    Declaration<TerrainSpec> s("terrain",
-                               "The ground, as a raster of elevations in a projected metric reference system.",
-                               &SceneSpec::terrain);
+    Declaration<TerrainSpec> s(
+        "terrain", "The ground, as a raster of elevations in a projected metric reference system, or in local metres.",
+        &SceneSpec::terrain);
     s.path("file", &TerrainSpec::file, "", "Any raster that GDAL reads; its reference system is that of the whole run.")
         .required = true;
+    s.choice("crs", &TerrainSpec::crs, {"file", "local"},
+             "Coordinate reference system: that of the file, or local for metres of its own, as those of a laboratory "
+             "flume, where the file states none. Layers that state none are then in the same coordinates, and outputs "
+             "that need a place on the globe are left out.");
     s.key("band", "", &TerrainSpec::band, between(1, 65535), "The raster's band that holds elevations.");
     s.optional_key("extent_m", "m", &TerrainSpec::extent, anything(), "the whole raster",
                    "The part of the terrain to use, in its own coordinates.");

@@ -28,8 +28,12 @@ struct ReportSpec {
 };
 
 /// `[terrain]`
+/// Where the terrain's coordinate reference system comes from: its file, or it has metres of its own.
+enum class CrsChoice { file, local };
+
 struct TerrainSpec {
     std::string file;
+    CrsChoice crs = CrsChoice::file;
     int band = 1;
     std::optional<Extent> extent;  ///< the part to use, in the terrain's CRS; absent: all of it
     std::string obtain;            ///< where to obtain the file, stated when it is missing

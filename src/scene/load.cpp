@@ -89,7 +89,8 @@ double total_volume(const Scene& scene) {
 
 Status load_terrain(const ParsedScene& parsed, Scene& scene) {
     const params::TerrainSpec& spec = parsed.spec.terrain;
-    Result<geo::Raster> raster = geo::read_terrain_raster(spec.file, spec.band, spec.extent);
+    Result<geo::Raster> raster =
+        geo::read_terrain_raster(spec.file, spec.band, spec.extent, spec.crs == params::CrsChoice::local);
     if (!raster) {
         std::string message = parsed.at("terrain.file") + ": " + raster.error().message;
         std::error_code code;
@@ -102,6 +103,11 @@ Status load_terrain(const ParsedScene& parsed, Scene& scene) {
     scene.crs = raster->crs;
     scene.vertical_unit = raster->vertical_unit;
     scene.nodata_share = raster->nodata_share;
+    if (scene.crs.local) {
+        scene.notes.emplace_back(
+            "terrain: local coordinates, whose place on the globe is not known: results.kml is left out, and "
+            "stac_item.json states no place");
+    }
     if (scene.vertical_unit == "not stated") {
         scene.notes.emplace_back("terrain: the file does not state its vertical unit, taken as metres");
     }
