@@ -11,6 +11,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "core/decimals.hpp"
 #include "core/number_or_null.hpp"
 #include "core/visible_text.hpp"
 
@@ -29,7 +30,9 @@ int terminal_columns() {
 }
 
 std::string front_text(const run::Progress& p) {
-    return std::isnan(p.front_chainage) ? "no front yet" : fmt::format("front to chainage {:.0f} m", p.front_chainage);
+    return std::isnan(p.front_chainage)
+               ? "no front yet"
+               : fmt::format("front to chainage {:.{}f} m", p.front_chainage, decimals_for(p.path_length, 0));
 }
 
 std::string bar_text(const run::Progress& p, const std::optional<run::SeriesProgress>& series) {

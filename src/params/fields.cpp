@@ -206,7 +206,9 @@ Section declare_outputs() {
     s.key("sample_interval_s", "s", &OutputSpec::sample_interval, between(0.001, 1e7),
           "Simulated time between rows of timeseries.csv.");
     s.key("chainage_interval_m", "m", &OutputSpec::chainage_interval, between(0.001, 1000),
-          "Chainage between rows of front.csv.");
+          "Chainage between rows of front.csv. On a flow path of less than 20 m, as in a laboratory, the defaults of "
+          "this key, front_velocity_window_m, arrival_depth_m and impact_patch_edge_m are smaller by length over 20 m, "
+          "which a note states.");
     s.key("front_velocity_window_m", "m", &OutputSpec::front_velocity_window, between(0.001, 1e5),
           "Chainage over which front velocity is fitted to the arrival times.");
     s.key("arrival_depth_m", "m", &OutputSpec::arrival_depth, between(0, 1000),

@@ -13,6 +13,7 @@
 #include "geo/orthophoto.hpp"
 #include "scene/grid_cell.hpp"
 #include "scene/limits.hpp"
+#include "scene/output_scale.hpp"
 #include "scene/particle_spacing.hpp"
 #include "scene/plausibility.hpp"
 #include "scene/viscosity_limit.hpp"
@@ -177,6 +178,7 @@ Result<Scene> assemble_scene(const ParsedScene& parsed) {
     TALUS_TRY(load_buildings(parsed, scene));
     TALUS_TRY(load_barriers(parsed, scene));
     TALUS_TRY(load_flow_path(parsed, scene));
+    shorten_outputs(scene);
     TALUS_TRY(load_observations(parsed, scene));
     TALUS_TRY(load_gauges(parsed, scene));
     TALUS_TRY(load_zoom(parsed, scene));
