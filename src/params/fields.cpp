@@ -227,10 +227,11 @@ Section declare_outputs() {
           fmt::format("Formats in which the run over time is also written: {}.", fmt::join(series_formats, ", ")));
     s.key("series_interval_s", "s", &OutputSpec::series_interval, between(0.001, 1e7),
           "Simulated time between the frames of the run over time.");
-    s.key("geoid_height_m", "m", &OutputSpec::geoid_height, between(-200, 200),
-          "Height above the ellipsoid of WGS 84 of where the terrain's heights are 0, from a geoid model such as "
-          "EGM2008: "
-          "3dtiles are placed on the globe by it.");
+    s.optional_key(
+        "geoid_height_m", "m", &OutputSpec::geoid_height, between(-200, 200),
+        "by the geoid grid of EGM2008 or EGM96 that is installed with PROJ; without one 0, which a note says",
+        "Height above the ellipsoid of WGS 84 of where the terrain's heights are 0: 3dtiles are placed on "
+        "the globe by it.");
     s.choice("intensity_guideline", &OutputSpec::intensity_guideline,
              {"swiss_debris_flow", "swiss_flood", "garcia_2003"},
              "Whose classes of intensity are mapped from peak depth and peak speed: debris flows or floods after the "

@@ -13,7 +13,7 @@
 #include "geo/orthophoto.hpp"
 #include "scene/grid_cell.hpp"
 #include "scene/limits.hpp"
-#include "scene/output_scale.hpp"
+#include "scene/output_defaults.hpp"
 #include "scene/particle_spacing.hpp"
 #include "scene/plausibility.hpp"
 #include "scene/viscosity_limit.hpp"
@@ -184,6 +184,7 @@ Result<Scene> assemble_scene(const ParsedScene& parsed) {
     TALUS_TRY(load_zoom(parsed, scene));
     TALUS_TRY(check_alerts(parsed, scene));
     TALUS_TRY(particles ? check_limits(parsed, scene) : check_depth_averaged(parsed, scene));
+    settle_geoid_height(scene);
     note_implausible_terrain(scene);
     if (particles) {
         note_coarse_particles(scene);

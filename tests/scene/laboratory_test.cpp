@@ -7,7 +7,7 @@
 #include "scene/check.hpp"
 #include "scene/load.hpp"
 #include "scene/new_scene.hpp"
-#include "scene/output_scale.hpp"
+#include "scene/output_defaults.hpp"
 #include "scene_folder.hpp"
 
 namespace talus::scene {

@@ -15,4 +15,8 @@ inline constexpr double shortest_field_path = 20;
 /// chainage and 0.1 m of depth are much in a flume of 4 m.
 void shorten_outputs(Scene& scene);
 
+/// Sets outputs.geoid_height of a scene that needs it and does not give it, by a geoid grid of PROJ, with a note;
+/// without one the note says so.
+void settle_geoid_height(Scene& scene);
+
 }  // namespace talus::scene

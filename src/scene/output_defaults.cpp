@@ -1,4 +1,4 @@
-#include "scene/output_scale.hpp"
+#include "scene/output_defaults.hpp"
 
 #include <algorithm>
 #include <array>
@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include "core/decimals.hpp"
+#include "geo/geoid.hpp"
 #include "params/fields.hpp"
 
 namespace talus::scene {
@@ -46,6 +47,26 @@ void shorten_outputs(Scene& scene) {
     const double path = scene.flow_path.length();
     scene.notes.push_back(
         fmt::format("outputs: {}, as suits a flow path of {:.{}f} m", changed, path, decimals_for(path, 0)));
+}
+
+void settle_geoid_height(Scene& scene) {
+    params::OutputSpec& outputs = scene.spec.outputs;
+    const bool on_globe = std::find(outputs.series.begin(), outputs.series.end(), "3dtiles") != outputs.series.end();
+    if (!on_globe || outputs.geoid_height) return;
+    const WorldPoint origin = scene.terrain.frame().origin;
+    const auto found = geo::geoid_height(scene.crs, {origin.x, origin.y});
+    if (!found) {
+        scene.notes.emplace_back(
+            "3dtiles: PROJ has no geoid grid here, so that heights are taken to count from the ellipsoid of WGS 84, "
+            "tens "
+            "of metres from the sea in most places; set outputs.geoid_height_m");
+        return;
+    }
+    outputs.geoid_height = found->height;
+    scene.notes.push_back(fmt::format(
+        "3dtiles: heights are taken to count from the sea, which lies {:.2f} m above the ellipsoid of WGS 84 "
+        "here by {} ({}); outputs.geoid_height_m says otherwise",
+        found->height, found->model, found->grid));
 }
 
 }  // namespace talus::scene
