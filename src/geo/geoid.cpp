@@ -56,7 +56,7 @@ std::optional<GeoidHeight> geoid_height(const Crs& crs, const PlanPoint& place) 
     if (!std::isfinite(degrees.x) || !std::isfinite(degrees.y)) return {};
     const Offline offline;
     for (const GeoidGrid& grid : grids) {
-        if (const auto height = height_by(grid, degrees)) return GeoidHeight{*height, grid.model, grid.file};
+        if (const auto height = height_by(grid, degrees)) return GeoidHeight{*height, grid.model};
     }
     return {};
 }

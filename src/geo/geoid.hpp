@@ -10,8 +10,8 @@ namespace talus::geo {
 
 /// Where heights above the sea are 0.
 struct GeoidHeight {
-    double height = 0;        ///< m above the ellipsoid of WGS 84
-    std::string model, grid;  ///< "EGM96", "egm96_15.gtx"
+    double height = 0;  ///< m above the ellipsoid of WGS 84
+    std::string model;  ///< "EGM96"
 };
 
 /// Of a geoid grid that is installed with PROJ: EGM2008 (Pavlis et al. 2012), otherwise EGM96 (Lemoine et al. 1998).

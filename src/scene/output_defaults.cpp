@@ -65,8 +65,8 @@ void settle_geoid_height(Scene& scene) {
     outputs.geoid_height = found->height;
     scene.notes.push_back(fmt::format(
         "3dtiles: heights are taken to count from the sea, which lies {:.2f} m above the ellipsoid of WGS 84 "
-        "here by {} ({}); outputs.geoid_height_m says otherwise",
-        found->height, found->model, found->grid));
+        "here by {}; outputs.geoid_height_m says otherwise",
+        found->height, found->model));
 }
 
 }  // namespace talus::scene

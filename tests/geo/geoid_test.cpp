@@ -3,9 +3,8 @@
 #include <array>
 #include <bit>
 #include <cstdint>
-#include <cstdlib>
+#include <filesystem>
 #include <fstream>
-#include <memory>
 
 #include <cpl_string.h>
 #include <gmock/gmock.h>
@@ -57,12 +56,16 @@ class Geoid : public testing::Test {
 };
 
 TEST_F(Geoid, IsThatOfTheGridThatIsInstalled) {
+    for (int k = 0; before_ != nullptr && before_[k] != nullptr; ++k) {
+        if (std::filesystem::exists(std::filesystem::path(before_[k]) / "us_nga_egm08_25.tif")) {
+            GTEST_SKIP() << "this PROJ has the newer file of EGM2008, which it prefers";
+        }
+    }
     write_grid(folder_.file("egm08_25.gtx"));
     look_in(folder_);
     // UTM zone 31: 500 km east is 3 degrees east of Greenwich.
     const auto found = geoid_height(*crs_from_text("EPSG:32631"), {500000, 4500000});
     ASSERT_TRUE(found);
-    if (found->grid != "egm08_25.gtx") GTEST_SKIP() << "this PROJ has the newer grid of EGM2008, which comes first";
     EXPECT_NEAR(found->height, 0.3, 1e-4);
     EXPECT_EQ(found->model, "EGM2008");
 }
