@@ -79,7 +79,7 @@ std::string progress_text(const calibrate::CalibrationProgress& p) {
                                    p.fast ? "fast " : "");
     if (p.failed > 0) text += fmt::format(", {} failed", p.failed);
     if (std::isfinite(p.least_misfit)) text += fmt::format(", least misfit {:.3g}", p.least_misfit);
-    return text + fmt::format(", at most about {} left", clock_text(p.wall_remaining));
+    return text + left_text(", at most about {} left", p.wall_remaining);
 }
 
 std::string progress_json(const calibrate::CalibrationProgress& p) {

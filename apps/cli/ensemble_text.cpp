@@ -68,7 +68,7 @@ std::string progress_text(const ensemble::EnsembleProgress& p) {
     std::string text = fmt::format("{} of {} runs", p.done + p.failed, p.count);
     if (p.failed > 0) text += fmt::format(", {} failed", p.failed);
     if (p.runs_per_minute > 0) text += fmt::format(", {:.3g} runs per minute", p.runs_per_minute);
-    return text + fmt::format(", about {} left", clock_text(p.wall_remaining));
+    return text + left_text(", about {} left", p.wall_remaining);
 }
 
 std::string progress_json(const ensemble::EnsembleProgress& p) {

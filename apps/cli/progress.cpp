@@ -11,6 +11,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "core/decimals.hpp"
 #include "core/number_or_null.hpp"
 #include "core/visible_text.hpp"
 
@@ -29,7 +30,9 @@ int terminal_columns() {
 }
 
 std::string front_text(const run::Progress& p) {
-    return std::isnan(p.front_chainage) ? "no front yet" : fmt::format("front to chainage {:.0f} m", p.front_chainage);
+    return std::isnan(p.front_chainage)
+               ? "no front yet"
+               : fmt::format("front to chainage {:.{}f} m", p.front_chainage, decimals_for(p.path_length, 0));
 }
 
 std::string bar_text(const run::Progress& p, const std::optional<run::SeriesProgress>& series) {
@@ -39,7 +42,7 @@ std::string bar_text(const run::Progress& p, const std::optional<run::SeriesProg
     if (series) facts += fmt::format("run {} of {}: {}  ", series->run, series->count, series->name);
     facts += fmt::format("t {:.1f} s  ", p.time);
     if (!series) facts += fmt::format("{:.2f} x real time  ", p.real_time_factor);
-    facts += fmt::format("{}  ETA {}", front_text(p), clock_text(series ? series->wall_remaining : p.wall_remaining));
+    facts += front_text(p) + left_text("  ETA {}", series ? series->wall_remaining : p.wall_remaining);
     const int width = std::min(40, columns - 3 - static_cast<int>(facts.size()));
     if (width < 5) return facts.substr(1, static_cast<std::size_t>(std::max(0, columns - 1)));
     const int filled = static_cast<int>(std::lround(std::clamp(share_done, 0.0, 1.0) * width));
@@ -49,10 +52,12 @@ std::string bar_text(const run::Progress& p, const std::optional<run::SeriesProg
 std::string line_text(const run::Progress& p, const std::optional<run::SeriesProgress>& series) {
     std::string text;
     if (series) text = fmt::format("run {} of {}, {}: ", series->run, series->count, series->name);
-    text +=
-        fmt::format("t {:.1f} s of at most {:.0f} s, {:.2f} x real time, {}, about {} left", p.time, p.end_time,
-                    p.real_time_factor, front_text(p), clock_text(series ? series->wall_remaining : p.wall_remaining));
-    return text + (series ? " of all runs\n" : "\n");
+    text += fmt::format("t {:.1f} s of at most {:.0f} s, {:.2f} x real time, {}", p.time, p.end_time,
+                        p.real_time_factor, front_text(p));
+    return text +
+           (series ? left_text(", about {} left of all runs", series->wall_remaining)
+                   : left_text(", about {} left", p.wall_remaining)) +
+           "\n";
 }
 
 // Not fmt::print: it throws when a pipe has been closed, and that must not end a run.
@@ -98,6 +103,10 @@ std::string clock_text(double seconds) {
     const long total = std::lround(std::min(seconds, 3.6e6));
     if (total >= 3600) return fmt::format("{}:{:02}:{:02}", total / 3600, total / 60 % 60, total % 60);
     return fmt::format("{}:{:02}", total / 60, total % 60);
+}
+
+std::string left_text(fmt::format_string<std::string> words, double seconds) {
+    return std::isfinite(seconds) ? fmt::format(words, clock_text(seconds)) : "";
 }
 
 ProgressReporter::ProgressReporter(ProgressStyle style) : style_(style) {

@@ -4,6 +4,8 @@
 #include <optional>
 #include <string>
 
+#include <fmt/format.h>
+
 #include "run/run_scene.hpp"
 #include "run/variants.hpp"
 
@@ -38,5 +40,7 @@ class ProgressReporter {
 
 /// "0:07", "12:34", "3:00:12".
 [[nodiscard]] std::string clock_text(double seconds);
+/// `words` with the clock in it, such as ", about {} left"; empty where too little is done to say.
+[[nodiscard]] std::string left_text(fmt::format_string<std::string> words, double seconds);
 
 }  // namespace talus::cli

@@ -93,9 +93,15 @@ void add_scene(CLI::App& program, std::vector<Command>& commands) {
 
     CLI::App* new_app = app->add_subcommand("new", "write a commented scene for your own terrain");
     const auto create = std::make_shared<scene::NewSceneOptions>();
-    new_app->add_option("--dem", create->dem, "terrain raster in a projected metric CRS")
+    new_app->add_option("--dem", create->dem, "terrain raster in a projected metric CRS, or in local metres")
         ->required()
         ->type_name("FILE");
+    new_app
+        ->add_option_function<std::string>(
+            "--crs", [create](const std::string&) { create->local = true; },
+            "local: the terrain states no reference system and has metres of its own, as a flume")
+        ->check(CLI::IsMember({"local"}))
+        ->type_name("local");
     new_app->add_option("--release", create->release, "polygons of the release area")->required()->type_name("FILE");
     new_app->add_option("--buildings", create->buildings, "polygons of the buildings")->type_name("FILE");
     CLI::Option* thickness =

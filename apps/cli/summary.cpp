@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/angle.hpp"
+#include "core/decimals.hpp"
 #include "core/hash.hpp"
 #include "core/number_or_null.hpp"
 #include "products/results_json.hpp"
@@ -44,10 +45,11 @@ std::string buildings_text(const observe::Observation& observation) {
     return text;
 }
 
-std::string barrier_text(const observe::BuildingImpact& barrier) {
-    return fmt::format("{}: peak force {:.0f} kN, {:.1f} m3 over it, {:.1f} m3 through openings, {:.1f} m3 retained",
-                       barrier.name, barrier.peak_force / 1000, barrier.overtopped_volume, barrier.passed_volume,
-                       barrier.retained_volume);
+std::string barrier_text(const observe::BuildingImpact& barrier, int decimals) {
+    return fmt::format(
+        "{0}: peak force {1:.0f} kN, {2:.{5}f} m3 over it, {3:.{5}f} m3 through openings, {4:.{5}f} m3 retained",
+        barrier.name, barrier.peak_force / 1000, barrier.overtopped_volume, barrier.passed_volume,
+        barrier.retained_volume, decimals);
 }
 
 std::string speed_text(double speed) {
@@ -151,28 +153,30 @@ std::string summary_text(const scene::Scene& scene, const run::RunResult& result
                      fmt::format("at {:g} m: {}; observed {:g} m/s", observed.chainage, computed, observed.value()));
     }
     if (const observe::RunOut& r = seen.run_out; std::isfinite(r.along_flow)) {
-        text +=
-            line("run-out", fmt::format("{}{:.0f} m along the flow, {:.0f} m straight, drop {:.0f} m, run-out angle "
-                                        "{:.1f} degrees{}",
-                                        r.at_least ? "at least " : "", r.along_flow, r.straight, r.drop,
-                                        r.runout_angle * degrees_per_radian,
-                                        r.at_least ? fmt::format("; debris left the {}", result.domain()) : ""));
+        text += line("run-out",
+                     fmt::format("{0}{1:.{2}f} m along the flow, {3:.{2}f} m straight, drop {4:.{2}f} m, run-out angle "
+                                 "{5:.1f} degrees{6}",
+                                 r.at_least ? "at least " : "", r.along_flow, decimals_for(r.along_flow, 0), r.straight,
+                                 r.drop, r.runout_angle * degrees_per_radian,
+                                 r.at_least ? fmt::format("; debris left the {}", result.domain()) : ""));
     }
     if (const double chainage = seen.run_out.front_chainage; std::isfinite(chainage)) {
-        text += line("front", fmt::format("to chainage {:.0f} m{}", chainage,
+        text += line("front", fmt::format("to chainage {:.{}f} m{}", chainage, decimals_for(seen.run_out.along_flow, 0),
                                           seen.followed_path ? " of the path that debris followed; until now chainages "
                                                                "were along the traced one"
                                                              : ""));
     }
-    text += line("volume", fmt::format("{:.1f} m3 released: {:.1f} deposited, {:.1f} moving, {:.1f} left the {}",
-                                       seen.volume_released, end.volume_deposited, end.volume_moving + end.volume_held,
-                                       end.volume_left, result.domain()));
+    const int decimals = decimals_for(seen.volume_released + seen.erosion.volume, 1);
+    text += line("volume",
+                 fmt::format("{0:.{5}f} m3 released: {1:.{5}f} deposited, {2:.{5}f} moving, {3:.{5}f} left the {4}",
+                             seen.volume_released, end.volume_deposited, end.volume_moving + end.volume_held,
+                             end.volume_left, result.domain(), decimals));
     if (!scene.bed.empty()) {
-        text += line("entrained", fmt::format("{:.1f} m3 from the bed", seen.erosion.volume));
+        text += line("entrained", fmt::format("{:.{}f} m3 from the bed", seen.erosion.volume, decimals));
     }
     if (hits_among(seen.buildings, false).all > 0) text += line("buildings hit", buildings_text(seen));
     for (const observe::BuildingImpact& b : seen.buildings) {
-        if (b.is_barrier) text += line("barrier", barrier_text(b));
+        if (b.is_barrier) text += line("barrier", barrier_text(b, decimals));
         if (!std::isnan(b.failure_time)) text += line("FAILED", fmt::format("{} at {:.2f} s", b.name, b.failure_time));
     }
     if (seen.thickness.known() && !result.depth_averaged()) {

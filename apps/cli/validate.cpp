@@ -2,6 +2,7 @@
 #include <chrono>
 #include <cstdio>
 #include <filesystem>
+#include <limits>
 #include <memory>
 #include <mutex>
 #include <numeric>
@@ -15,6 +16,7 @@
 #include <nlohmann/json.hpp>
 
 #include "command.hpp"
+#include "core/number_or_null.hpp"
 #include "core/temporary_folder.hpp"
 #include "core/try.hpp"
 #include "exit_code.hpp"
@@ -24,6 +26,7 @@
 #include "products/text_file.hpp"
 #include "progress.hpp"
 #include "run/threads.hpp"
+#include "run/time_left.hpp"
 #include "thread_options.hpp"
 #include "validate/page.hpp"
 #include "validate/suite.hpp"
@@ -107,17 +110,16 @@ Status write_outputs(const ValidateArguments& arguments, const std::vector<CaseR
     return {};
 }
 
-/// The cases left are taken to last as long as those before: an upper bound, for the long ones come first.
-std::string progress_json(std::size_t done, std::size_t count, std::chrono::steady_clock::time_point begun) {
-    const std::chrono::duration<double> so_far = std::chrono::steady_clock::now() - begun;
-    const nlohmann::ordered_json event = {
-        {"event", "progress"},
-        {"cases_done", done},
-        {"cases", count},
-        {"wall_remaining_s", done == 0 ? nlohmann::ordered_json()
-                                       : nlohmann::ordered_json(so_far.count() / static_cast<double>(done) *
-                                                                static_cast<double>(count - done))}};
+std::string progress_json(std::size_t done, std::size_t count, double wall_remaining) {
+    const nlohmann::ordered_json event = {{"event", "progress"},
+                                          {"cases_done", done},
+                                          {"cases", count},
+                                          {"wall_remaining_s", number_or_null<nlohmann::ordered_json>(wall_remaining)}};
     return event.dump();
+}
+
+double now_in_seconds() {
+    return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
 }
 
 std::string result_json(const std::vector<CaseResult>& results) {
@@ -141,7 +143,8 @@ std::vector<CaseResult> compute(const std::vector<Case>& cases, const ValidateAr
 
     const ProgressStyle style = progress_style(false, arguments.json);
     ProgressReporter progress(style);
-    const auto begun = std::chrono::steady_clock::now();
+    // An upper bound: the long cases come first.
+    run::WorkClock clock(std::vector<double>(cases.size(), 1), threads.runs_at_once);
     std::size_t done = 0;
     std::vector<std::optional<CaseResult>> computed(cases.size());
     std::mutex reporting;
@@ -150,7 +153,8 @@ std::vector<CaseResult> compute(const std::vector<Case>& cases, const ValidateAr
         for (;;) {
             std::unique_lock lock(reporting);
             if (next == order.size() || watch.stop_requested()) return;
-            const std::size_t i = order[next++];
+            const std::size_t place = next++, i = order[place];
+            clock.begin(place, now_in_seconds());
             const std::string heading = fmt::format("case {} of {}: {}", next, cases.size(), cases[i].name);
             progress.say(heading);
             lock.unlock();
@@ -169,7 +173,10 @@ std::vector<CaseResult> compute(const std::vector<Case>& cases, const ValidateAr
             computed[i] = std::move(result);
             const std::scoped_lock say(reporting);
             ++done;
-            if (style == ProgressStyle::json) (void)print(progress_json(done, cases.size(), begun) + "\n");
+            clock.end(place, now_in_seconds());
+            if (style == ProgressStyle::json) {
+                (void)print(progress_json(done, cases.size(), clock.wall_remaining(now_in_seconds())) + "\n");
+            }
         }
     };
     {
@@ -206,7 +213,7 @@ int validate_command(const ValidateArguments& arguments) {
     const Result<SharedThreads> threads =
         share_threads(arguments.threads, run::Threads().count(), static_cast<int>(cases->size()));
     if (!threads) return fail(exit_code::bad_input, threads.error().message);
-    if (arguments.json) (void)print(progress_json(0, cases->size(), {}) + "\n");
+    if (arguments.json) (void)print(progress_json(0, cases->size(), std::numeric_limits<double>::quiet_NaN()) + "\n");
     const std::vector<CaseResult> results = compute(*cases, arguments, *threads, watch);
     const int printed = print_result(arguments.json ? result_json(results) + "\n" : validate::table_text(results));
     if (Status s = write_outputs(arguments, results); !s) return fail(exit_code::failure, s.error().message);

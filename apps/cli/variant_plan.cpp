@@ -36,7 +36,7 @@ Result<VariantPlan> VariantPlan::make(const RunArguments& arguments, const run::
     return VariantPlan(source, std::move(prepared), refinement_count);
 }
 
-void VariantPlan::report_base(ProgressReporter& reporter, const run::Progress& now) const {
+void VariantPlan::report_base(ProgressReporter& reporter, const run::Progress& now) {
     reporter.report(now, empty() ? std::nullopt : std::optional(clock_.at(now)));
 }
 

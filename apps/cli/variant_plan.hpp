@@ -40,7 +40,7 @@ class VariantPlan {
     [[nodiscard]] bool empty() const { return variants_.empty(); }
 
     /// Reports the progress of the base; with variants, that of all runs together.
-    void report_base(ProgressReporter& reporter, const run::Progress& now) const;
+    void report_base(ProgressReporter& reporter, const run::Progress& now);
 
     /// Runs the variants one after the other and compares them with the base. After a stop request or a fault of the
     /// base the rest are listed as missing.

@@ -33,6 +33,7 @@ class SceneModel {
           source_(source),
           folder_(folder),
           most_(made.most),
+          clock_(*made.clock),
           other_(other),
           fast_(fast),
           options_(options),
@@ -47,6 +48,7 @@ class SceneModel {
         options.retry_failed = options_.retry_failed;
         options.stop_requested = options_.stop_requested;
         options.verified = verified_;
+        options.clock = &clock_;
         options.on_refused = options_.on_refused;
         options.on_progress = [&](const ensemble::EnsembleProgress& now) { tell(now, phase); };
         if (options_.on_run)
@@ -90,21 +92,6 @@ class SceneModel {
         options_.on_run(made);
     }
 
-    static double mean_wall_time(const std::vector<ensemble::RunRecord>& records) {
-        double wall = 0;
-        for (const ensemble::RunRecord& record : records)
-            wall += record.wall_time / static_cast<double>(records.size());
-        return wall;
-    }
-
-    /// s, for what is left of the other model's runs; NaN: none of them has been made.
-    [[nodiscard]] double other_remaining() const {
-        if (other_.records == nullptr) return 0;
-        if (other_.records->empty()) return observe::never;
-        return mean_wall_time(*other_.records) * static_cast<double>(other_.most - other_.records->size()) /
-               std::max(1, options_.runs_at_once);
-    }
-
     void tell(const ensemble::EnsembleProgress& now, SearchPhase phase) const {
         if (!options_.on_progress) return;
         CalibrationProgress p;
@@ -114,11 +101,13 @@ class SceneModel {
         p.failed = now.failed;
         p.most = most_;
         p.least_misfit = least_misfit_;
-        const double left = static_cast<double>(most_) - now.share_done * static_cast<double>(now.count);
-        const double here = static_cast<double>(now.count) * (1 - now.share_done);  // of this round
-        p.wall_remaining = records_.empty() ? (here > 0 ? now.wall_remaining / here * left : observe::never)
-                                            : mean_wall_time(records_) * left / std::max(1, options_.runs_at_once);
-        p.wall_remaining += other_remaining();
+        const double now_s = std::chrono::duration<double>(Clock::now().time_since_epoch()).count();
+        double elapsed = clock_.elapsed(now_s), left = clock_.left(now_s);
+        if (other_.clock) {
+            elapsed = std::max(elapsed, other_.clock->elapsed(now_s));
+            left += other_.clock->left(now_s);
+        }
+        p.wall_remaining = run::told_left(elapsed, left);
         options_.on_progress(p);
     }
 
@@ -126,6 +115,7 @@ class SceneModel {
     const run::SceneSource& source_;
     const ensemble::EnsembleFolder& folder_;
     const std::size_t most_;
+    run::WorkClock& clock_;
     const ModelRuns other_;
     const bool fast_;
     const CalibrationOptions options_;
@@ -229,7 +219,10 @@ Result<Calibration> calibrate(const CalibrationPlan& plan, ensemble::PlannedRuns
     made.observed = observed;
     std::vector<stats::Distribution> priors;
     for (const ensemble::Factor& f : made.factors) priors.push_back(f.distribution);
-    const ModelRuns own{plan.search.runs, &made.records}, others{plan.search.fast_runs, &made.fast_records};
+    run::WorkClock clock(std::vector<double>(plan.search.runs, 1), options.runs_at_once);
+    run::WorkClock fast_clock(std::vector<double>(plan.search.fast_runs, 1), options.runs_at_once);
+    const ModelRuns own{plan.search.runs, &made.records, &clock};
+    const ModelRuns others{plan.search.fast_runs, &made.fast_records, &fast_clock};
     const ForwardModel model =
         scene_model(runs, source, observed, folder, options, own, plan.fast ? others : ModelRuns());
     std::optional<ensemble::FastModel> fast = plan.fast;

@@ -16,6 +16,7 @@
 #include "ensemble/plan.hpp"
 #include "ensemble/predict.hpp"
 #include "ensemble/run_record.hpp"
+#include "run/time_left.hpp"
 #include "run/variants.hpp"
 #include "scene/scene.hpp"
 
@@ -33,7 +34,7 @@ struct CalibrationProgress {
     bool fast = false;                           ///< counts the runs of the fast model, which are under way
     std::size_t done = 0, failed = 0, most = 0;  ///< runs so far, and their maximum number
     double least_misfit = observe::never;
-    double wall_remaining = 0;  ///< s, an estimate; NaN: not known yet
+    double wall_remaining = 0;  ///< s, an estimate, at most; NaN: too little is done to say
 };
 
 /// A run that has just been completed.
@@ -85,10 +86,11 @@ struct CalibrationOptions {
                                                             const std::vector<ensemble::ObservedValue>& observed,
                                                             const std::string& scene_name);
 
-/// Runs of one model: their maximum number, and those made.
+/// Runs of one model: their maximum number, those made, and the clock of all.
 struct ModelRuns {
     std::size_t most = 0;
     std::vector<ensemble::RunRecord>* records = nullptr;
+    run::WorkClock* clock = nullptr;
 };
 
 /// Predictions of the scene's observations by its runs, which are stored in the folder; existing ones are reused.

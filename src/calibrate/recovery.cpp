@@ -60,8 +60,9 @@ Result<Recovery> recover(const CalibrationPlan& plan, const ensemble::PlannedRun
                                      folder / "truths", calibration_definition("set of known runs", plan, runs, source,
                                                                                base, observed, scene_name)));
     std::vector<ensemble::RunRecord> records;
+    run::WorkClock clock(std::vector<double>(max_draws_per_seed * seeds, 1), options.runs_at_once);
     const ForwardModel model =
-        scene_model(truths, source, observed, all, options, {max_draws_per_seed * seeds, &records});
+        scene_model(truths, source, observed, all, options, {max_draws_per_seed * seeds, &records, &clock});
     std::vector<std::size_t> usable;
     stats::Points points;
     while (usable.size() < seeds) {

@@ -23,16 +23,26 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
+double now_in_seconds() {
+    return std::chrono::duration<double>(Clock::now().time_since_epoch()).count();
+}
+
 /// The runs of one process, taken one after the other by its threads.
 class Workers {
   public:
     Workers(const PlannedRuns& runs, const run::SceneSource& source, const EnsembleFolder& folder,
             const EnsembleOptions& options)
-        : runs_(runs), source_(source), folder_(folder), options_(options) {}
+        : runs_(runs),
+          source_(source),
+          folder_(folder),
+          options_(options),
+          own_clock_(efforts(), options.runs_at_once),
+          clock_(options.clock ? *options.clock : own_clock_) {}
 
     Result<EnsembleOutcome> work();
 
   private:
+    [[nodiscard]] std::vector<double> efforts() const;
     void find_work();
     [[nodiscard]] Result<RunRecord> recorded(std::size_t run) const;
     void take_runs(std::size_t worker);
@@ -43,6 +53,7 @@ class Workers {
     [[nodiscard]] std::optional<std::pair<RunRecord, observe::HazardMaps>> compute(std::size_t run, std::size_t worker);
     void finish(const RunRecord& record, const observe::HazardMaps& maps, std::size_t worker);
     void report(std::size_t worker, double share);
+    void estimate(double now);
 
     const PlannedRuns& runs_;
     const run::SceneSource& source_;
@@ -57,6 +68,9 @@ class Workers {
     EnsembleOutcome outcome_;
     Status status_;
     std::vector<double> under_way_;  // per thread, share done of its run
+    run::WorkClock own_clock_;
+    run::WorkClock& clock_;
+    double wall_remaining_ = observe::never, next_estimate_ = 0;  // s
     std::size_t computed_ = 0;
     Clock::time_point start_ = Clock::now();
 };
@@ -70,6 +84,14 @@ Result<RunRecord> Workers::recorded(std::size_t run) const {
     return Error{fmt::format("{}: is of other values than this program chooses", file.string())};
 }
 
+/// Runs of other processes are none of this one's work.
+std::vector<double> Workers::efforts() const {
+    if (options_.clock) return {};
+    std::vector<double> efforts(runs_.count(), 0);
+    for (std::size_t run = options_.shard; run < efforts.size(); run += options_.shard_count) efforts[run] = 1;
+    return efforts;
+}
+
 void Workers::find_work() {
     for (std::size_t run = options_.shard; run < runs_.count(); run += options_.shard_count) {
         ++outcome_.count;
@@ -78,6 +100,7 @@ void Workers::find_work() {
             const Result<RunRecord> record = recorded(run);
             if (record && (record->complete() || !options_.retry_failed)) {
                 ++outcome_.resumed;
+                if (run >= options_.verified) clock_.found(run, record->wall_time);
                 record->complete() ? ++outcome_.done : ++outcome_.failed;
                 continue;
             }
@@ -89,6 +112,10 @@ void Workers::find_work() {
 
 std::optional<std::pair<RunRecord, observe::HazardMaps>> Workers::compute(std::size_t run, std::size_t worker) {
     const PlannedRun planned = runs_.at(run);
+    {
+        const std::lock_guard lock(mutex_);
+        clock_.begin(run, now_in_seconds());
+    }
     std::vector<std::string> overrides = source_.overrides;
     overrides.insert(overrides.end(), planned.overrides.begin(), planned.overrides.end());
     overrides.push_back(fmt::format("solver.thread_count={}", options_.threads_per_run));
@@ -108,7 +135,13 @@ std::optional<std::pair<RunRecord, observe::HazardMaps>> Workers::compute(std::s
     record.model = scene->spec.solver.model == params::ModelChoice::depth_averaged ? "depth_averaged" : "particles";
     run::RunOptions run_options;
     run_options.stop_requested = options_.stop_requested;
-    run_options.on_progress = [&](const run::Progress& now) { report(worker, now.share_done); };
+    run_options.on_progress = [&](const run::Progress& now) {
+        {
+            const std::lock_guard lock(mutex_);
+            clock_.tick(run, now_in_seconds(), now.wall_remaining);
+        }
+        report(worker, now.share_done);
+    };
     Result<run::RunResult> result = run_scene(*scene, run_options);
     if (!result) {
         record.fault = result.error().message;
@@ -151,9 +184,16 @@ void Workers::report(std::size_t worker, double share) {
     const double wall = std::chrono::duration<double>(Clock::now() - start_).count();
     const double computed = static_cast<double>(computed_);
     p.runs_per_minute = wall > 0 ? 60 * computed / wall : 0;
-    const double left = static_cast<double>(p.count) - before - part;
-    p.wall_remaining = computed + part > 0 ? wall / (computed + part) * left : observe::never;
+    estimate(now_in_seconds());
+    p.wall_remaining = wall_remaining_;
     options_.on_progress(p);
+}
+
+/// Now and then: it goes over all runs, and a run reports every step.
+void Workers::estimate(double now) {
+    if (now < next_estimate_) return;
+    wall_remaining_ = clock_.wall_remaining(now);
+    next_estimate_ = now + 0.1;
 }
 
 void Workers::finish(const RunRecord& record, const observe::HazardMaps& maps, std::size_t worker) {
@@ -161,6 +201,7 @@ void Workers::finish(const RunRecord& record, const observe::HazardMaps& maps, s
     {
         const std::lock_guard lock(mutex_);
         under_way_[worker] = 0;
+        clock_.end(record.run, now_in_seconds());
         if (!written) {
             status_ = written;
             failed_ = true;

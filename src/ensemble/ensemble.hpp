@@ -8,6 +8,7 @@
 #include "core/result.hpp"
 #include "ensemble/ensemble_folder.hpp"
 #include "ensemble/plan.hpp"
+#include "run/time_left.hpp"
 #include "run/variants.hpp"
 
 namespace talus::ensemble {
@@ -17,7 +18,7 @@ struct EnsembleProgress {
     std::size_t done = 0, failed = 0, count = 0;  ///< runs of this process, earlier ones included
     double share_done = 0;                        ///< 0 to 1, runs under way counted by their simulated time
     double runs_per_minute = 0;                   ///< of this process so far
-    double wall_remaining = 0;                    ///< s, an estimate; NaN: not known yet
+    double wall_remaining = 0;                    ///< s, an estimate; NaN: too little is done to say
 };
 
 struct EnsembleOptions {
@@ -30,6 +31,7 @@ struct EnsembleOptions {
     std::function<void(const RunRecord&)> on_run = {};              ///< likewise, when a run of this call is recorded
     std::size_t verified = 0;  ///< records of runs before this one were verified or written by this process
     std::function<void(const std::string&)> on_refused = {};  ///< why a record is not used and its run made again
+    run::WorkClock* clock = nullptr;  ///< where these runs are part of more: the clock of all, a run per number
 };
 
 struct EnsembleOutcome {

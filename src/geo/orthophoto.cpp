@@ -122,7 +122,8 @@ Result<Picture> open_picture(const std::string& file, const Crs& crs, const Exte
 
     TALUS_ASSIGN(auto words, band_choice(file, data));
     words.insert(words.end(), {"-of", "VRT"});
-    if (own.IsEmpty() && !target.IsEmpty()) words.insert(words.end(), {"-a_srs", picture.target_crs});
+    const bool takes_target = own.IsEmpty() || (own.IsLocal() != 0 && target.IsLocal() != 0);
+    if (takes_target && !target.IsEmpty()) words.insert(words.end(), {"-a_srs", picture.target_crs});
     picture.name = memory_name("vrt");
     picture.view = translated(data, picture.name, words);
     if (!picture.view)

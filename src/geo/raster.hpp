@@ -24,8 +24,9 @@ struct Raster {
 /// `extent` (in the raster's CRS) reads that part only; it must overlap the raster. Errors, each naming the file and,
 /// where there is one, the command that corrects it: missing file, a folder, empty or truncated data, no such band, all
 /// nodata, fewer than 2 x 2 cells, geographic or missing CRS, unit other than metre, rotated, cells not square.
-[[nodiscard]] Result<Raster> read_terrain_raster(const std::string& file, int band,
-                                                 const std::optional<Extent>& extent);
+/// `local`: it need not state a CRS, and must not state one that is not local.
+[[nodiscard]] Result<Raster> read_terrain_raster(const std::string& file, int band, const std::optional<Extent>& extent,
+                                                 bool local = false);
 
 /// Reads a band of values (release thickness) that must be in the CRS of the terrain, and is taken to be if its file
 /// states none (.asc cannot); otherwise as above.

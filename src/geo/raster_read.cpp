@@ -184,6 +184,10 @@ Result<Raster> read_cells(const std::string& file, const RasterSource& source, c
 Result<Raster> read_over_terrain(const std::string& file, const Crs& terrain_crs, Kind kind) {
     TALUS_ASSIGN(auto source, open_raster(file, 1, &terrain_crs));
     if (!same_crs(to_spatial_reference(source.crs), to_spatial_reference(terrain_crs))) {
+        if (terrain_crs.local) {
+            return Error{fmt::format("{}: is in {}, the terrain in local coordinates; give the raster in those", file,
+                                     source.crs.label())};
+        }
         const std::string target = terrain_crs.epsg != 0 ? fmt::format("EPSG:{}", terrain_crs.epsg) : "EPSG:nnnn";
         return Error{
             fmt::format("{}: is in {}, the terrain in {}: gdalwarp -t_srs {} -r bilinear -ot Float32 "
@@ -196,8 +200,14 @@ Result<Raster> read_over_terrain(const std::string& file, const Crs& terrain_crs
 
 }  // namespace
 
-Result<Raster> read_terrain_raster(const std::string& file, int band, const std::optional<Extent>& extent) {
-    TALUS_ASSIGN(auto source, open_raster(file, band));
+Result<Raster> read_terrain_raster(const std::string& file, int band, const std::optional<Extent>& extent, bool local) {
+    const Crs own = local ? Crs::own_metres() : Crs();
+    TALUS_ASSIGN(auto source, open_raster(file, band, local ? &own : nullptr));
+    if (local && !source.crs.local) {
+        return Error{
+            fmt::format("{}: is in {}; crs = \"local\" is for a terrain that states no coordinate reference system",
+                        file, source.crs.label())};
+    }
     return read_cells(file, source, extent, Kind::elevations);
 }
 

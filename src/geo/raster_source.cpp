@@ -83,8 +83,11 @@ Status check_crs(const std::string& file, const std::string& driver, const OGRSp
                                         ? fmt::format("gdal_edit.py -a_srs EPSG:nnnn {}", shell_quoted(file))
                                         : fmt::format("gdal_translate -a_srs EPSG:nnnn {} {}", shell_quoted(file),
                                                       mended_name(file, "_crs", ".tif"));
-        return Error{fmt::format("{}: states no coordinate reference system; give it the code of the one it is in: {}",
-                                 file, command)};
+        return Error{
+            fmt::format("{}: states no coordinate reference system; give it the code of the one it is in: {} "
+                        "(or, for metres of its own as those of a flume, set terrain.crs = \"local\": talus "
+                        "scene new --crs local)",
+                        file, command)};
     }
     const auto place = to_longitude_latitude(reference, centre);
     const std::string metric = metric_crs_for(place);

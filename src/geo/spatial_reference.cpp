@@ -8,6 +8,7 @@
 #include <cpl_conv.h>
 #include <fmt/format.h>
 
+#include "core/lower_case.hpp"
 #include "core/utf8.hpp"
 #include "geo/gdal.hpp"
 #include "geo/latitude.hpp"
@@ -45,12 +46,23 @@ std::string Crs::label() const {
     return name.empty() ? fmt::format("EPSG:{}", epsg) : fmt::format("EPSG:{} ({})", epsg, name);
 }
 
+Crs Crs::own_metres() {
+    OGRSpatialReference reference;
+    reference.SetLocalCS("local coordinates");
+    reference.SetLinearUnits("metre", 1);
+    return to_crs(reference);
+}
+
 Result<Crs> crs_from_text(const std::string& text) {
+    if (text == "local") return Crs::own_metres();
     const GdalMessages messages;
     const char* const options[] = {"ALLOW_NETWORK_ACCESS=NO", "ALLOW_FILE_ACCESS=NO", nullptr};
     OGRSpatialReference reference;
     if (text.empty() || reference.SetFromUserInput(text.c_str(), options) != OGRERR_NONE) {
-        return Error{fmt::format("crs = \"{}\" is not known; give a code such as \"EPSG:2326\", or WKT", text)};
+        return Error{
+            fmt::format("crs = \"{}\" is not known; give a code such as \"EPSG:2326\", WKT, or "
+                        "\"local\"",
+                        text)};
     }
     return to_crs(reference);
 }
@@ -65,12 +77,13 @@ Crs to_crs(const OGRSpatialReference& reference) {
     char* wkt = nullptr;
     if (plan.exportToWkt(&wkt, options) == OGRERR_NONE) crs.wkt = to_utf8(wkt);
     CPLFree(wkt);
+    crs.local = plan.IsLocal() != 0;
     if (const char* name = plan.GetName(); name != nullptr) crs.name = to_utf8(name);
     const char* authority = plan.GetAuthorityName(nullptr);
     const char* code = plan.GetAuthorityCode(nullptr);
     if (authority != nullptr && code != nullptr && std::string(authority) == "EPSG") {
         crs.epsg = std::atoi(code);
-    } else {
+    } else if (!crs.local) {
         identify(plan, crs);
     }
     return crs;
@@ -89,6 +102,7 @@ OGRSpatialReference to_spatial_reference(const Crs& crs) {
 }
 
 bool same_crs(const OGRSpatialReference& a, const OGRSpatialReference& b) {
+    if (a.IsLocal() != 0 && b.IsLocal() != 0) return true;
     const GdalMessages messages;
     OGRSpatialReference plan_a(a), plan_b(b);
     plan_a.StripVertical();
@@ -99,6 +113,12 @@ bool same_crs(const OGRSpatialReference& a, const OGRSpatialReference& b) {
     // A .prj file writes the same system with other names; the code that both match with certainty decides.
     const int code_a = to_crs(plan_a).epsg, code_b = to_crs(plan_b).epsg;
     return code_a != 0 && code_a == code_b;
+}
+
+bool is_undefined(const OGRSpatialReference* reference) {
+    if (reference == nullptr || reference->IsEmpty() != 0) return true;
+    const char* const name = reference->GetName();
+    return name != nullptr && lower_case(name).starts_with("undefined");
 }
 
 std::optional<PlanPoint> to_longitude_latitude(const OGRSpatialReference& reference, const PlanPoint& p) {

@@ -17,8 +17,12 @@ namespace talus::geo {
 /// With x east and y north, whatever axis order the authority prefers. Empty for an empty Crs.
 [[nodiscard]] OGRSpatialReference to_spatial_reference(const Crs& crs);
 
-/// Whether the same x east, y north is the same place in both; vertical parts are not compared.
+/// Whether the same x east, y north is the same place in both; vertical parts are not compared. Local systems are taken
+/// to be the same: their names say nothing.
 [[nodiscard]] bool same_crs(const OGRSpatialReference& a, const OGRSpatialReference& b);
+
+/// None, or "Undefined geographic SRS" and "Undefined Cartesian SRS" as GeoPackage has them (OGC 12-128r18, 1.1.2.1.2).
+[[nodiscard]] bool is_undefined(const OGRSpatialReference* reference);
 
 /// Longitude (x) and latitude (y) in degrees of a plan position; empty where no transformation is known.
 [[nodiscard]] std::optional<PlanPoint> to_longitude_latitude(const OGRSpatialReference& reference, const PlanPoint& p);

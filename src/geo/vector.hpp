@@ -21,7 +21,8 @@ struct PolygonFeature {
 
 struct PolygonLayer {
     std::vector<PolygonFeature> features;
-    std::string reprojection;       ///< "reprojected from EPSG:4326 (WGS 84) to EPSG:2326 (...)", or empty: same CRS
+    /// "reprojected from EPSG:4326 (WGS 84) to EPSG:2326 (...)", "taken to be in ..."; empty: same CRS
+    std::string reprojection;
     bool encoding_assumed = false;  ///< some text was not UTF-8 and was read as Windows-1252
 };
 
@@ -42,9 +43,10 @@ struct SingleLine {
 };
 
 /// Reads polygons from GeoJSON, GeoPackage, Shapefile or any other OGR source; `layer` empty: the only layer. Vectors
-/// are reprojected to `terrain_crs`, with a note; all text is UTF-8. Errors: missing file, a folder that is no data
-/// source, no such layer or several without a name, empty layer, other geometry, missing CRS, self-intersecting polygon
-/// (names the feature and the place).
+/// are reprojected to `terrain_crs`, with a note; where that is local, a layer with a local system, with none or with
+/// one that says nothing (GeoJSON without crs) is taken to be in it. All text is UTF-8. Errors: missing file, a folder
+/// that is no data source, no such layer or several without a name, empty layer, other geometry, missing CRS,
+/// self-intersecting polygon (names the feature and the place).
 [[nodiscard]] Result<PolygonLayer> read_polygons(const std::string& file, const std::string& layer,
                                                  const Crs& terrain_crs);
 

@@ -79,8 +79,11 @@ Status find_transformation(const std::string& file, const Crs& terrain_crs, Sour
     if (!works()) {
         source.transformation.reset(OGRCreateCoordinateTransformation(&from, &to));
         if (!works()) {
-            return Error{fmt::format("{}: cannot be brought from {} to {}: {}", file, source.crs.label(),
-                                     terrain_crs.label(), messages.failure_or("no transformation is known"))};
+            constexpr std::size_t longest = 160;  // PROJ may print both systems as WKT
+            const std::string reason = messages.failure_or("");
+            return Error{
+                fmt::format("{}: cannot be brought from {} to {}: {}", file, source.crs.label(), terrain_crs.label(),
+                            reason.empty() || reason.size() > longest ? "no transformation is known" : reason)};
         }
         warning = " without a known change of datum: positions may be off by hundreds of metres";
     }
@@ -88,6 +91,25 @@ Status find_transformation(const std::string& file, const Crs& terrain_crs, Sour
         source.reprojection =
             fmt::format("reprojected from {} to {}{}", source.crs.label(), terrain_crs.label(), warning);
     }
+    return {};
+}
+
+/// Whether a layer's reference system says nothing of its coordinates. GeoJSON without the member crs reads as WGS 84.
+bool says_nothing(const Source& source) {
+    if (is_undefined(source.layer->GetSpatialRef())) return true;
+    GDALDriver* const driver = source.data->GetDriver();
+    return driver != nullptr && EQUAL(driver->GetDescription(), "GeoJSON") && source.crs.epsg == 4326;
+}
+
+/// A layer on a terrain in local coordinates, of which nobody knows where they lie.
+Status take_as_local(const std::string& file, const Crs& terrain_crs, Source& source) {
+    if (source.crs.local && !is_undefined(source.layer->GetSpatialRef())) return {};
+    if (!says_nothing(source)) {
+        return Error{fmt::format("{}: is in {}, the terrain in local coordinates; give the layer in those", file,
+                                 source.crs.label())};
+    }
+    source.crs = terrain_crs;
+    source.reprojection = "states no coordinate reference system, taken to be in the terrain's local coordinates";
     return {};
 }
 
@@ -108,13 +130,21 @@ Result<Source> open_layer(const std::string& file, const std::string& layer, con
         return Error{fmt::format("{}: layer \"{}\" is a table without geometry", file, source.layer->GetName())};
     }
     const OGRSpatialReference* reference = source.layer->GetSpatialRef();
-    if (reference == nullptr || reference->IsEmpty() != 0) {
-        return Error{
-            fmt::format("{}: layer \"{}\" states no coordinate reference system; give it the code of the one it "
-                        "is in: ogr2ogr -a_srs EPSG:nnnn {} {}",
-                        file, source.layer->GetName(), mended_name(file, "_crs", ".gpkg"), shell_quoted(file))};
+    if (reference != nullptr) source.crs = to_crs(*reference);
+    if (terrain_crs.local) {
+        TALUS_TRY(take_as_local(file, terrain_crs, source));
+        return Result<Source>(std::move(source));
     }
-    source.crs = to_crs(*reference);
+    if (is_undefined(reference) || source.crs.local) {
+        return Error{
+            fmt::format("{}: layer \"{}\" {}; give it the code of the one it is in: ogr2ogr -a_srs EPSG:nnnn {} {}",
+                        file, source.layer->GetName(),
+                        is_undefined(reference)
+                            ? "states no coordinate reference system"
+                            : fmt::format("has local coordinates ({}), the terrain a coordinate reference system",
+                                          source.crs.label()),
+                        mended_name(file, "_crs", ".gpkg"), shell_quoted(file))};
+    }
     TALUS_TRY(find_transformation(file, terrain_crs, source));
     return Result<Source>(std::move(source));
 }

@@ -63,11 +63,15 @@ Section declare_report() {
 }
 
 Section declare_terrain() {
-    Declaration<TerrainSpec> s("terrain",
-                               "The ground, as a raster of elevations in a projected metric reference system.",
-                               &SceneSpec::terrain);
+    Declaration<TerrainSpec> s(
+        "terrain", "The ground, as a raster of elevations in a projected metric reference system, or in local metres.",
+        &SceneSpec::terrain);
     s.path("file", &TerrainSpec::file, "", "Any raster that GDAL reads; its reference system is that of the whole run.")
         .required = true;
+    s.choice("crs", &TerrainSpec::crs, {"file", "local"},
+             "Coordinate reference system: that of the file, or local for metres of its own, as those of a laboratory "
+             "flume, where the file states none. Layers that state none are then in the same coordinates, and outputs "
+             "that need a place on the globe are left out.");
     s.key("band", "", &TerrainSpec::band, between(1, 65535), "The raster's band that holds elevations.");
     s.optional_key("extent_m", "m", &TerrainSpec::extent, anything(), "the whole raster",
                    "The part of the terrain to use, in its own coordinates.");
@@ -202,7 +206,9 @@ Section declare_outputs() {
     s.key("sample_interval_s", "s", &OutputSpec::sample_interval, between(0.001, 1e7),
           "Simulated time between rows of timeseries.csv.");
     s.key("chainage_interval_m", "m", &OutputSpec::chainage_interval, between(0.001, 1000),
-          "Chainage between rows of front.csv.");
+          "Chainage between rows of front.csv. On a flow path of less than 20 m, as in a laboratory, the defaults of "
+          "this key, front_velocity_window_m, arrival_depth_m and impact_patch_edge_m are smaller by length over 20 m, "
+          "which a note states.");
     s.key("front_velocity_window_m", "m", &OutputSpec::front_velocity_window, between(0.001, 1e5),
           "Chainage over which front velocity is fitted to the arrival times.");
     s.key("arrival_depth_m", "m", &OutputSpec::arrival_depth, between(0, 1000),
@@ -221,10 +227,11 @@ Section declare_outputs() {
           fmt::format("Formats in which the run over time is also written: {}.", fmt::join(series_formats, ", ")));
     s.key("series_interval_s", "s", &OutputSpec::series_interval, between(0.001, 1e7),
           "Simulated time between the frames of the run over time.");
-    s.key("geoid_height_m", "m", &OutputSpec::geoid_height, between(-200, 200),
-          "Height above the ellipsoid of WGS 84 of where the terrain's heights are 0, from a geoid model such as "
-          "EGM2008: "
-          "3dtiles are placed on the globe by it.");
+    s.optional_key(
+        "geoid_height_m", "m", &OutputSpec::geoid_height, between(-200, 200),
+        "by the geoid grid of EGM2008 or EGM96 that is installed with PROJ; without one 0, which a note says",
+        "Height above the ellipsoid of WGS 84 of where the terrain's heights are 0: 3dtiles are placed on "
+        "the globe by it.");
     s.choice("intensity_guideline", &OutputSpec::intensity_guideline,
              {"swiss_debris_flow", "swiss_flood", "garcia_2003"},
              "Whose classes of intensity are mapped from peak depth and peak speed: debris flows or floods after the "

@@ -28,8 +28,12 @@ struct ReportSpec {
 };
 
 /// `[terrain]`
+/// Where the terrain's coordinate reference system comes from: its file, or it has metres of its own.
+enum class CrsChoice { file, local };
+
 struct TerrainSpec {
     std::string file;
+    CrsChoice crs = CrsChoice::file;
     int band = 1;
     std::optional<Extent> extent;  ///< the part to use, in the terrain's CRS; absent: all of it
     std::string obtain;            ///< where to obtain the file, stated when it is missing
@@ -278,17 +282,17 @@ inline constexpr std::array series_formats = {"netcdf", "geotiff", "paraview", "
 
 /// `[outputs]`
 struct OutputSpec {
-    std::optional<double> map_cell;     ///< m; absent: a whole fraction of the terrain's cell, near 2.5 spacings
-    double sample_interval = 0.1;       ///< s, rows of timeseries.csv
-    double chainage_interval = 1;       ///< m, rows of front.csv
-    double front_velocity_window = 10;  ///< m of chainage over which d(chainage)/dt is fitted
-    double arrival_depth = 0.1;         ///< m, debris has arrived in a map cell above this depth
-    double impact_filter_window = 0.2;  ///< s, averaging window of force and pressure on buildings
-    double impact_patch_edge = 1;       ///< m, of the squares of a wall over which impact pressure is averaged
-    double deposited_speed = 0.1;       ///< m/s, slower debris counts as deposited
-    std::vector<std::string> series;    ///< formats in which the run over time is written, of series_formats
-    double series_interval = 1;         ///< s between its frames
-    double geoid_height = 0;            ///< m, of the zero of the terrain's heights above the ellipsoid of WGS 84
+    std::optional<double> map_cell;      ///< m; absent: a whole fraction of the terrain's cell, near 2.5 spacings
+    double sample_interval = 0.1;        ///< s, rows of timeseries.csv
+    double chainage_interval = 1;        ///< m, rows of front.csv
+    double front_velocity_window = 10;   ///< m of chainage over which d(chainage)/dt is fitted
+    double arrival_depth = 0.1;          ///< m, debris has arrived in a map cell above this depth
+    double impact_filter_window = 0.2;   ///< s, averaging window of force and pressure on buildings
+    double impact_patch_edge = 1;        ///< m, of the squares of a wall over which impact pressure is averaged
+    double deposited_speed = 0.1;        ///< m/s, slower debris counts as deposited
+    std::vector<std::string> series;     ///< formats in which the run over time is written, of series_formats
+    double series_interval = 1;          ///< s between its frames
+    std::optional<double> geoid_height;  ///< m, of the zero of the terrain's heights above the ellipsoid of WGS 84
     GuidelineChoice intensity_guideline = GuidelineChoice::swiss_debris_flow;
     bool peak_thickness = false;  ///< also a map of the peak thickness normal to the slope
 };

@@ -63,7 +63,7 @@ Status write_glb(const View& view, const std::filesystem::path& file) {
 Status write_tileset(const View& view, const std::filesystem::path& file, const std::string& glb) {
     WorldPoint origin = view.scene.terrain.frame().origin;
     const WorldPoint local = origin;
-    origin.z += view.scene.spec.outputs.geoid_height;
+    origin.z += view.scene.spec.outputs.geoid_height.value_or(0);
     TALUS_ASSIGN(const geo::EarthFixed place, geo::earth_fixed(view.scene.crs, origin));
     Json transform = Json::array();
     for (const auto& [axis, last] : {std::pair{place.east, 0}, {place.north, 0}, {place.up, 0}, {place.origin, 1}}) {

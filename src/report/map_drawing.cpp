@@ -12,6 +12,7 @@
 #include "report/map.hpp"
 #include "report/number_text.hpp"
 #include "report/relief.hpp"
+#include "report/results.hpp"
 
 namespace talus::report {
 namespace {
@@ -31,8 +32,17 @@ std::string polygon_data(const MapFrame& frame, const Polygon& polygon) {
     return d;
 }
 
+/// Decimals that tell multiples of a step apart, whose digits are 1, 2, 2.5 or 5.
+int decimals_of_step(double step) {
+    constexpr double rounding = 1e-6;
+    int decimals = 0;
+    for (double rest = step; decimals < 6 && std::abs(rest - std::round(rest)) > rounding * rest; rest *= 10)
+        ++decimals;
+    return decimals;
+}
+
 /// The elevation of an index contour, written along its middle where the line is straight enough to carry it.
-void draw_contour_label(Svg& svg, const MapFrame& frame, const geo::Contour& contour) {
+void draw_contour_label(Svg& svg, const MapFrame& frame, const geo::Contour& contour, int decimals) {
     const auto& points = contour.points;
     double length = 0;
     std::vector<double> along = {0};
@@ -66,7 +76,8 @@ void draw_contour_label(Svg& svg, const MapFrame& frame, const geo::Contour& con
         double angle = -std::atan2(b.y - a.y, b.x - a.x) * 180 / std::numbers::pi;
         if (angle > 90) angle -= 180;
         if (angle < -90) angle += 180;
-        svg.turned_text("contour-label", frame.x(m.x), frame.y(m.y), angle, fixed(contour.elevation, 0), {}, "3.5");
+        svg.turned_text("contour-label", frame.x(m.x), frame.y(m.y), angle, fixed(contour.elevation, decimals), {},
+                        "3.5");
     }
 }
 
@@ -116,7 +127,7 @@ void draw_flow_path(Svg& svg, const scene::Scene& scene, const MapFrame& frame) 
         const double at_x = frame.x(p.x), at_y = frame.y(p.y);
         svg.line("chainage-tick", at_x - 5 * nx, at_y - 5 * ny, at_x + 5 * nx, at_y + 5 * ny);
         const char* anchor = nx > 0.4 ? "start" : nx < -0.4 ? "end" : "middle";
-        svg.text("chainage", at_x + 9 * nx, at_y + 12 * ny + 4, fixed(c, step < 1 ? 1 : 0), anchor);
+        svg.text("chainage", at_x + 9 * nx, at_y + 12 * ny + 4, fixed(c, decimals_of_step(step)), anchor);
     }
 }
 
@@ -134,7 +145,8 @@ void draw_observations(Svg& svg, const scene::Scene& scene, const MapFrame& fram
         const double nx = -(after.y - before.y) / run, ny = -(after.x - before.x) / run;  // to the left, downstream
         svg.path("observation", diamond(frame.x(p.x), frame.y(p.y)));
         svg.text("observation-label", frame.x(p.x) + 13 * nx, frame.y(p.y) + 16 * ny + 4,
-                 fmt::format("{} m: {} m/s", fixed(o.chainage, 0), plain(o.value())), nx >= 0 ? "start" : "end");
+                 fmt::format("{} m: {} m/s", fixed(o.chainage, length_decimals(scene)), plain(o.value())),
+                 nx >= 0 ? "start" : "end");
     }
 }
 
@@ -186,7 +198,7 @@ void draw_contours(Svg& svg, const scene::Scene& scene, const MapFrame& frame, d
     for (const geo::Contour& contour : geo::contours(ground, interval)) {
         const bool labelled = std::lround(contour.elevation / interval) % 5 == 0;
         (labelled ? index : fine) += path_data(frame, contour.points);
-        if (labelled) draw_contour_label(labels, frame, contour);
+        if (labelled) draw_contour_label(labels, frame, contour, decimals_of_step(5 * interval));
     }
     svg.path("contour", fine);
     svg.path("index-contour", index);
@@ -234,7 +246,7 @@ void draw_vectors(Svg& svg, const scene::Scene& scene, const MapContent& content
 
 void draw_frame(Svg& svg, const scene::Scene& scene, const MapContent& content, const MapFrame& frame) {
     const double step = round_step(std::max(frame.area.width(), frame.area.height()) / 6);
-    const int digits = step < 1 ? 1 : 0;
+    const int digits = decimals_of_step(step);
     std::vector<double> east, north;
     for (double v = std::ceil(frame.area.x_min / step) * step; v <= frame.area.x_max; v += step) east.push_back(v);
     for (double v = std::ceil(frame.area.y_min / step) * step; v <= frame.area.y_max; v += step) north.push_back(v);

@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include "core/decimals.hpp"
 #include "core/visible_text.hpp"
 
 namespace talus::report {
@@ -57,6 +58,8 @@ std::string formatted(double value, std::string_view format) {
             return fixed(value, digits);
         case 's':
             return significant(value, digits);
+        case 'l':
+            return fixed(value, decimals_for(value, digits));
         case 'd':
             return (value > 0 ? "+" : "") + fixed(value, digits);
         case 'p':

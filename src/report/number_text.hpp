@@ -24,8 +24,9 @@ namespace talus::report {
 /// For coordinates in SVG: at most two decimals, "." as the point, no trailing zeros.
 [[nodiscard]] std::string coordinate(double value);
 
-/// A number in the format requested by a template: "f2" two decimals, "d2" the same with a plus sign, "s3" three
-/// significant digits, "p" plain, "c" a coordinate, "" the fewest digits that identify it.
+/// A number in the format requested by a template: "f2" two decimals, "l2" the same or what decimals_for() says, "d2"
+/// the same with a plus sign, "s3" three significant digits, "p" plain, "c" a coordinate, "" the fewest digits that
+/// identify it.
 [[nodiscard]] std::string formatted(double value, std::string_view format);
 
 }  // namespace talus::report

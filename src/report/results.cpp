@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include "core/angle.hpp"
+#include "core/decimals.hpp"
 #include "core/number_or_null.hpp"
 #include "observe/front_tracker.hpp"
 #include "observe/peaks.hpp"
@@ -58,19 +59,6 @@ std::string moving_text(const run::RunResult& result, double deposited_speed) {
 }
 
 }  // namespace
-
-std::string place(const scene::Scene& scene, const PlanPoint& at) {
-    if (!scene.flow_path.empty()) {
-        if (const auto on_path = scene.flow_path.locate(at)) {
-            return fmt::format("at chainage {}\u00a0m", fixed(on_path->chainage, 0));
-        }
-    }
-    return fmt::format("at {} E {} N", fixed(at.x, 0), fixed(at.y, 0));
-}
-
-std::string plural(std::size_t n, std::string_view word) {
-    return fmt::format("{} {}{}", n, word, n == 1 ? "" : "s");
-}
 
 Json still_moving(const run::RunResult& result) {
     const run::StillMoving moving = result.still_moving();
@@ -150,27 +138,33 @@ Json key_figures(const scene::Scene& scene, const run::RunResult& result) {
     const observe::Observation& o = result.observation;
     const MassBalance mass = mass_balance(o);
     Json all = Json::array();
-    const auto add = [&](const char* key, const char* name, Json value, const char* format, const char* unit,
+    const auto add = [&](const char* key, const char* name, Json value, const std::string& format, const char* unit,
                          const std::string& note, bool alert = false) {
         all.push_back(key_figure(key, name, std::move(value), format, unit, note, alert));
     };
-    add("released_volume_m3", "Released volume", o.volume_released, o.volume_released < 100 ? "f1" : "f0", "m³",
+    const int volume_decimals = decimals_for(o.volume_released + mass.entrained, 1);
+    const int run_out_decimals = decimals_for(o.run_out.along_flow, 0);
+    const auto volume_format = [&](double v) { return v < 100 ? fmt::format("f{}", volume_decimals) : "f0"; };
+    const auto in_m3 = [&](double volume) { return fixed(volume, volume_decimals); };
+    add("released_volume_m3", "Released volume", o.volume_released, volume_format(o.volume_released), "m³",
         result.zoom ? fmt::format("of the event's {} m³ came into the zoom", fixed(result.zoom->event_volume, 0))
                     : plural(scene.releases.size(), "release") +
                           (scene.inflows.empty() ? "" : ", " + plural(scene.inflows.size(), "inflow")));
     if (!scene.bed.empty()) {
-        add("entrained_volume_m3", "Entrained from the bed", mass.entrained, mass.entrained < 100 ? "f1" : "f0", "m³",
+        add("entrained_volume_m3", "Entrained from the bed", mass.entrained, volume_format(mass.entrained), "m³",
             fmt::format("{} × the released volume, deepest {}\u00a0m", fixed(mass.entrained / o.volume_released, 2),
-                        fixed(greatest(o.erosion.depth), 2)));
+                        fixed(greatest(o.erosion.depth), length_decimals(scene, 2))));
     }
     const bool ran = std::isfinite(o.run_out.along_flow);
-    const std::string front = std::isfinite(o.run_out.front_chainage)
-                                  ? fmt::format(", front to chainage {}\u00a0m", fixed(o.run_out.front_chainage, 0))
-                                  : "";
+    const std::string front =
+        std::isfinite(o.run_out.front_chainage)
+            ? fmt::format(", front to chainage {}\u00a0m", fixed(o.run_out.front_chainage, run_out_decimals))
+            : "";
     add("run_out_along_flow_m", o.run_out.at_least ? "Run-out along the flow, at least" : "Run-out along the flow",
-        o.run_out.along_flow, "f0", ran ? "m" : "",
-        ran ? fmt::format("{}\u00a0m in a straight line, drop {}\u00a0m{}{}", fixed(o.run_out.straight, 0),
-                          fixed(o.run_out.drop, 1), front,
+        o.run_out.along_flow, fmt::format("f{}", run_out_decimals), ran ? "m" : "",
+        ran ? fmt::format("{}\u00a0m in a straight line, drop {}\u00a0m{}{}",
+                          fixed(o.run_out.straight, run_out_decimals),
+                          fixed(o.run_out.drop, std::max(1, run_out_decimals)), front,
                           o.run_out.at_least ? fmt::format("; debris left the {}", result.domain()) : "")
             : "no debris ran out");
     add("runout_angle_deg", "Run-out angle", o.run_out.runout_angle * degrees_per_radian, "f1", ran ? "°" : "",
@@ -193,15 +187,16 @@ Json key_figures(const scene::Scene& scene, const run::RunResult& result) {
     all.push_back(key_figure("buildings_hit", "Buildings hit", hits.hit, "f0", fmt::format("of {}", hits.all),
                              hits_note, hits.hit > 0));
     const auto [depth, speed, pressure] = measure_peaks(o.maps);
-    add("peak_depth_m", "Peak flow depth", depth.value, "f1", "m", place_of(scene, depth));
+    add("peak_depth_m", "Peak flow depth", depth.value, fmt::format("f{}", length_decimals(scene, 1)), "m",
+        place_of(scene, depth));
     add("peak_speed_mps", "Peak speed", speed.value, "f1", "m/s", place_of(scene, speed));
     add("peak_dynamic_pressure_kPa", "Peak dynamic pressure", pressure.value / 1e3, "s3", "kPa",
         "ρv² of the free flow, " + place_of(scene, pressure));
     add("mass_balance", "Mass balance", mass.closes ? Json("closed") : Json(mass.residual), "f3",
         mass.closes ? "" : "m³ missing",
-        fmt::format("deposited\u00a0{} · moving\u00a0{} · left\u00a0{}\u00a0m³{}", fixed(mass.deposited, 1),
-                    fixed(mass.moving, 1), fixed(mass.left, 1),
-                    mass.held > 0 ? fmt::format(" · held\u00a0{}\u00a0m³", fixed(mass.held, 1)) : ""),
+        fmt::format("deposited\u00a0{} · moving\u00a0{} · left\u00a0{}\u00a0m³{}", in_m3(mass.deposited),
+                    in_m3(mass.moving), in_m3(mass.left),
+                    mass.held > 0 ? fmt::format(" · held\u00a0{}\u00a0m³", in_m3(mass.held)) : ""),
         !mass.closes);
     return all;
 }
@@ -221,8 +216,9 @@ Json layers(const scene::Scene& scene, const run::RunResult& result) {
     return fact("Layers of particles",
                 fmt::format("{}median {} ({} m), thinnest tenth of the trail {} ({} m), when the flow was thickest at "
                             "each place{}",
-                            asked, fixed(median, 1), fixed(flow.median, 2),
-                            fixed(flow.thin / result.particle_spacing, 1), fixed(flow.thin, 2), enough ? "" : ": "),
+                            asked, fixed(median, 1), fixed(flow.median, length_decimals(scene, 2)),
+                            fixed(flow.thin / result.particle_spacing, 1), fixed(flow.thin, length_decimals(scene, 2)),
+                            enough ? "" : ": "),
                 enough ? "" : warning, enough);
 }
 
@@ -243,11 +239,13 @@ Json quality(const scene::Scene& scene, const run::RunResult& result) {
         fact("Real-time factor",
              significant(result.real_time_factor(), 3) + " (simulated over wall time; 1 is real time)"),
     };
+    const int decimals = decimals_for(o.volume_released + mass.entrained, 2);
+    const auto in_m3 = [&](double volume) { return fixed(volume, decimals); };
     const Json balance =
         fact("Mass balance",
-             fmt::format("released {}{} = held {} + moving {} + deposited {} + left {} m³", fixed(o.volume_released, 2),
-                         scene.bed.empty() ? "" : fmt::format(" + entrained {}", fixed(mass.entrained, 2)),
-                         fixed(mass.held, 2), fixed(mass.moving, 2), fixed(mass.deposited, 2), fixed(mass.left, 2)),
+             fmt::format("released {}{} = held {} + moving {} + deposited {} + left {} m³", in_m3(o.volume_released),
+                         scene.bed.empty() ? "" : fmt::format(" + entrained {}", in_m3(mass.entrained)),
+                         in_m3(mass.held), in_m3(mass.moving), in_m3(mass.deposited), in_m3(mass.left)),
              mass.closes ? "" : fmt::format("; {} m³ missing", fixed(mass.residual, 3)));
     if (result.depth_averaged()) {
         all.push_back(fact(
@@ -303,7 +301,7 @@ Json observations(const scene::Scene& scene, const run::RunResult& result) {
     if (scene.spec.observations.empty()) return {};
     Json rows =
         table({{"observation", "Observation", ""},
-               {"chainage_m", "Chainage", "m", "f0"},
+               {"chainage_m", "Chainage", "m", fmt::format("f{}", length_decimals(scene))},
                {"quantity", "Quantity", ""},
                {"observed_mps", "Observed", "m/s", "f1"},
                {"computed_mps", "Computed", "m/s", "f1", "", "not reached", true},

@@ -80,6 +80,9 @@ struct NamedRun {
 [[nodiscard]] Json inputs(const scene::Scene& scene);
 [[nodiscard]] Json computation(const scene::Scene& scene, const run::RunResult& result);
 
+/// Decimals of lengths that belong to the scene: `least`, and those more that a terrain of less than 10 m needs.
+[[nodiscard]] int length_decimals(const scene::Scene& scene, int least = 0);
+
 /// "at chainage 88 m", or the coordinates where the path does not pass.
 [[nodiscard]] std::string place(const scene::Scene& scene, const PlanPoint& at);
 

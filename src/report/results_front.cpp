@@ -100,7 +100,7 @@ void draw_profile(Plot& plot, const scene::Scene& scene, const run::RunResult& r
         plot.vertical(run_out.front_chainage, "toe-line");
         plot.label(run_out.front_chainage, profile.range.high, run_out.front_chainage > 0.85 * end ? -6 : 6, 14,
                    run_out.front_chainage > 0.85 * end ? "end" : "start", "note",
-                   fmt::format("front to chainage {} m", fixed(run_out.front_chainage, 0)));
+                   fmt::format("front to chainage {} m", fixed(run_out.front_chainage, length_decimals(scene))));
     }
     for (const Bend& bend : bends(scene.flow_path, end)) {
         plot.vertical(bend.chainage, "bend-line");

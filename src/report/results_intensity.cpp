@@ -1,4 +1,6 @@
 // How intense the flow was, by the classes of a guideline, and on what area.
+#include <fmt/format.h>
+
 #include "report/intensity.hpp"
 #include "report/results.hpp"
 
@@ -10,7 +12,7 @@ Json intensity(const scene::Scene& scene, const run::RunResult& result) {
     Json rows = table({{"class", "Class", ""},
                        {"name", "Intensity", ""},
                        {"criterion", "Peak depth h, peak speed v", ""},
-                       {"area_m2", "Area", "m²", "f0"}});
+                       {"area_m2", "Area", "m²", fmt::format("f{}", length_decimals(scene))}});
     for (std::size_t k = guideline.classes.size(); k > 0; --k) {
         double area = 0;
         for (const float value : map.values) {

@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include "core/decimals.hpp"
 #include "core/number_or_null.hpp"
 #include "report/intensity.hpp"
 #include "report/map.hpp"
@@ -123,9 +124,9 @@ Json building_rows(const scene::Scene& scene, const run::RunResult& result, std:
                        {"peak_force_kN", "Peak force", "kN", "s3"},
                        {"peak_impact_pressure_kPa", "Impact pressure", "kPa, highest patch", "s3", "", "–", true},
                        {"peak_dynamic_pressure_kPa", "Dynamic pressure", "kPa, ρv² to the wall", "s3"},
-                       {"peak_depth_m", "Depth at walls", "m", "f2"},
+                       {"peak_depth_m", "Depth at walls", "m", fmt::format("f{}", length_decimals(scene, 2))},
                        {"intensity", "Intensity", guideline.name},
-                       {"height_m", "Height", "m", "f1"}});
+                       {"height_m", "Height", "m", fmt::format("f{}", length_decimals(scene, 1))}});
     for (std::size_t k = 0; k < std::min(max_rows, hit.size()); ++k) {
         const observe::BuildingImpact& b = impacts[hit[k]];
         const IntensityClass* intensity = guideline.class_of(b);
@@ -173,16 +174,17 @@ Json barriers(const run::RunResult& result) {
     const auto& impacts = result.observation.buildings;
     Json rows;
     if (std::any_of(impacts.begin(), impacts.end(), [](const auto& b) { return b.is_barrier; })) {
+        const std::string volume = fmt::format("f{}", decimals_for(result.observation.volume_released, 1));
         std::vector<Column> columns = {{"name", "Barrier", ""},
                                        {"first_hit_s", "First hit", "s", "f1"},
                                        {"peak_force_kN", "Peak force", "kN", "s3"},
                                        {"peak_impact_pressure_kPa", "Impact pressure", "kPa", "s3"},
                                        {"impulse_kNs", "Impulse", "kN s", "s3"}};
-        columns.insert(columns.end(), {{"overtopped_m3", "Over the crest", "m³", "f1", "", "–", true},
+        columns.insert(columns.end(), {{"overtopped_m3", "Over the crest", "m³", volume, "", "–", true},
                                        {"first_overtopped_s", "First over", "s", "f1"},
-                                       {"passed_m3", "Through openings and meshes", "m³", "f1"},
-                                       {"retained_m3", "Retained at the end", "m³", "f1"},
-                                       {"peak_retained_m3", "Retained at most", "m³", "f1"},
+                                       {"passed_m3", "Through openings and meshes", "m³", volume},
+                                       {"retained_m3", "Retained at the end", "m³", volume},
+                                       {"peak_retained_m3", "Retained at most", "m³", volume},
                                        {"peak_filling_height_m", "Filled at most", "m", "f2"}});
         rows = table(columns);
         for (const observe::BuildingImpact& b : impacts) {

@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "core/angle.hpp"
+#include "core/decimals.hpp"
 #include "core/number_or_null.hpp"
 #include "report/number_text.hpp"
 #include "report/results.hpp"
@@ -23,7 +24,7 @@ struct Quantity {
 std::vector<Quantity> quantities(const BothModels& models, const run::SecondOpinion& opinion) {
     std::vector<Quantity> all;
     const observe::Observation &p = models.particles.observation, &d = models.depth_averaged.observation;
-    const auto add = [&](const std::string& name, const char* unit, const char* format, const auto& value) {
+    const auto add = [&](const std::string& name, const char* unit, const std::string& format, const auto& value) {
         all.push_back({name, unit, format, value(p), value(d)});
     };
     for (const params::ObservationSpec& observed : models.scene.spec.observations) {
@@ -33,30 +34,34 @@ std::vector<Quantity> quantities(const BothModels& models, const run::SecondOpin
         add("Front arrival" + at, "s", "f1",
             [&](const auto& o) { return front_at(o, observed.chainage).arrival_time; });
     }
-    add("Front to chainage", "m", "f0", [](const auto& o) { return o.run_out.front_chainage; });
-    add("Run-out along the flow", "m", "f0", [](const auto& o) { return o.run_out.along_flow; });
-    add("Run-out in a straight line", "m", "f0", [](const auto& o) { return o.run_out.straight; });
+    const std::string metres = fmt::format("f{}", length_decimals(models.scene));
+    const std::string square_metres = fmt::format("f{}", decimals_for(opinion.area.both + opinion.area.only_first, 0));
+    add("Front to chainage", "m", metres, [](const auto& o) { return o.run_out.front_chainage; });
+    add("Run-out along the flow", "m", metres, [](const auto& o) { return o.run_out.along_flow; });
+    add("Run-out in a straight line", "m", metres, [](const auto& o) { return o.run_out.straight; });
     add("Run-out angle", "°", "f1", [](const auto& o) { return o.run_out.runout_angle * degrees_per_radian; });
-    all.push_back({"Affected area", "m²", "f0", opinion.area.both + opinion.area.only_first,
+    all.push_back({"Affected area", "m²", square_metres, opinion.area.both + opinion.area.only_first,
                    opinion.area.both + opinion.area.only_second});
-    add("Deposit, area", "m²", "f0", [](const auto& o) { return o.deposit.area; });
-    add("Deposit, depth that nine tenths stay below", "m", "f2", [](const auto& o) { return o.deposit.depth; });
-    const auto peak = [&](const std::string& name, const char* unit, const char* format, const run::MapPair& maps,
-                          double scale) {
+    add("Deposit, area", "m²", square_metres, [](const auto& o) { return o.deposit.area; });
+    add("Deposit, depth that nine tenths stay below", "m", fmt::format("f{}", length_decimals(models.scene, 2)),
+        [](const auto& o) { return o.deposit.depth; });
+    const auto peak = [&](const std::string& name, const char* unit, const std::string& format,
+                          const run::MapPair& maps, double scale) {
         all.push_back({name, unit, format, scale * maps.peak_particles.value, scale * maps.peak_depth_averaged.value});
     };
-    const auto median = [&](const std::string& name, const char* unit, const char* format, const run::MapPair& maps,
-                            double scale) {
+    const auto median = [&](const std::string& name, const char* unit, const std::string& format,
+                            const run::MapPair& maps, double scale) {
         all.push_back({name + ", median of the ground of both", unit, format, scale * maps.median_particles,
                        scale * maps.median_depth_averaged});
     };
-    peak("Peak depth", "m", "f1", opinion.depth, 1);
-    median("Peak depth", "m", "f2", opinion.depth, 1);
+    peak("Peak depth", "m", fmt::format("f{}", length_decimals(models.scene, 1)), opinion.depth, 1);
+    median("Peak depth", "m", fmt::format("f{}", length_decimals(models.scene, 2)), opinion.depth, 1);
     peak("Peak speed", "m/s", "f1", opinion.speed, 1);
     median("Peak speed", "m/s", "f1", opinion.speed, 1);
     peak("Peak dynamic pressure", "kPa", "s3", opinion.pressure, 1e-3);
     median("Peak dynamic pressure", "kPa", "s3", opinion.pressure, 1e-3);
-    add("Released volume", "m³", "f1", [](const auto& o) { return o.volume_released; });
+    add("Released volume", "m³", fmt::format("f{}", decimals_for(p.volume_released, 1)),
+        [](const auto& o) { return o.volume_released; });
     all.push_back({"Wall time", "s", "f1", models.particles.wall_time, models.depth_averaged.wall_time});
     return all;
 }

@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "core/decimals.hpp"
 #include "report/number_text.hpp"
 #include "report/results.hpp"
 #include "report/second_opinion_parts.hpp"
@@ -34,12 +35,12 @@ std::string change_text(double particles, double depth_averaged) {
     return fmt::format(", {} %", std::abs(percent) < 0.5 ? "0" : formatted(percent, "d0"));
 }
 
-std::string with_unit(double value, const char* format, const char* unit) {
+std::string with_unit(double value, const std::string& format, const char* unit) {
     return std::isfinite(value) ? formatted(value, format) + (*unit == 0 ? "" : fmt::format("\u00a0{}", unit)) : "none";
 }
 
 /// "12.1 m/s with particles, 14.0 m/s depth-averaged, +16 %". `at`: in brackets, of each.
-std::string pair_text(double particles, double depth_averaged, const char* format, const char* unit,
+std::string pair_text(double particles, double depth_averaged, const std::string& format, const char* unit,
                       const std::array<std::string, 2>& at = {}) {
     const auto place = [](const std::string& where) { return where.empty() ? "" : fmt::format(" ({})", where); };
     return fmt::format("{} with particles{}, {} depth-averaged{}{}", with_unit(particles, format, unit), place(at[0]),
@@ -52,10 +53,11 @@ std::array<std::string, 2> places(const scene::Scene& scene, const run::MapPair&
 }
 
 /// The medians over the ground of both, which one cell does not change.
-std::string medians_text(const char* what, const run::MapPair& maps, const char* unit) {
+std::string medians_text(const char* what, const run::MapPair& maps, const std::string& format, const char* unit) {
     if (!std::isfinite(maps.median_particles)) return "";
     return fmt::format(" Over the ground that both cover, the median of the {} is {} and {}{}.", what,
-                       with_unit(maps.median_particles, "f1", unit), with_unit(maps.median_depth_averaged, "f1", unit),
+                       with_unit(maps.median_particles, format, unit),
+                       with_unit(maps.median_depth_averaged, format, unit),
                        change_text(maps.median_particles, maps.median_depth_averaged));
 }
 
@@ -68,31 +70,33 @@ Sentence speed(const BothModels& models, const run::SecondOpinion& opinion) {
             fmt::format("Peak speed: {}. Peak dynamic pressure: {} and {}{}.{}",
                         pair_text(p, d, "f1", "m/s", places(models.scene, v)), with_unit(pressure_p, "s3", "kPa"),
                         with_unit(pressure_d, "s3", "kPa"), change_text(pressure_p, pressure_d),
-                        medians_text("peak speed", v, "m/s"))};
+                        medians_text("peak speed", v, "f1", "m/s"))};
 }
 
 Sentence depth(const BothModels& models, const run::SecondOpinion& opinion) {
     const run::MapPair& h = opinion.depth;
     const double p = h.peak_particles.value, d = h.peak_depth_averaged.value;
     if (!(p > 0) && !(d > 0)) return {};
-    std::string text = fmt::format("Peak depth: {}.", pair_text(p, d, "f1", "m", places(models.scene, h)));
+    const std::string metres = fmt::format("f{}", length_decimals(models.scene, 1));
+    std::string text = fmt::format("Peak depth: {}.", pair_text(p, d, metres, "m", places(models.scene, h)));
     if (h.largest.known() && h.largest.size() != 0) {
         text +=
             fmt::format(" At one place the peak depths differ most {}: {} and {}.", place(models.scene, h.largest.at),
-                        with_unit(h.largest.particles, "f1", "m"), with_unit(h.largest.depth_averaged, "f1", "m"));
+                        with_unit(h.largest.particles, metres, "m"), with_unit(h.largest.depth_averaged, metres, "m"));
     }
-    return {size_of(p, d), text + medians_text("peak depth", h, "m")};
+    return {size_of(p, d), text + medians_text("peak depth", h, metres, "m")};
 }
 
 Sentence area(const BothModels& models, const run::AreaAgreement& area) {
     const double iou = area.intersection_over_union();
     if (std::isnan(iou)) return {};
+    const int decimals = decimals_for(area.both + area.only_first + area.only_second, 0);
     return {
         -std::log(iou),
         fmt::format("Both models cover {}\u00a0m² deeper than {}\u00a0m, {} % of what either covers; {}\u00a0m² are "
                     "covered with particles only, {}\u00a0m² in the depth-averaged model only.",
-                    fixed(area.both, 0), plain(models.scene.spec.outputs.arrival_depth), fixed(100 * iou, 0),
-                    fixed(area.only_first, 0), fixed(area.only_second, 0))};
+                    fixed(area.both, decimals), plain(models.scene.spec.outputs.arrival_depth), fixed(100 * iou, 0),
+                    fixed(area.only_first, decimals), fixed(area.only_second, decimals))};
 }
 
 Sentence arrival(const run::LargestDifference& arrival) {

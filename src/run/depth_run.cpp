@@ -170,6 +170,7 @@ class GridRun {
         progress.end_time = scene_.spec.solver.end_time;
         progress.real_time_factor = wall_time_ > 0 ? solver_.time() / wall_time_ : 0;
         progress.front_chainage = observer_.front_chainage();
+        progress.path_length = scene_.flow_path.empty() ? 0 : scene_.flow_path.length();
         progress.share_done = clock_.share_done();
         progress.wall_remaining = clock_.wall_remaining();
         progress.step = solver_.steps();

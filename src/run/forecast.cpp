@@ -7,6 +7,7 @@
 #include <unordered_map>
 
 #include "run/stop_rule.hpp"
+#include "run/time_left.hpp"
 #include "sim/physics/resistance.hpp"
 
 namespace talus::run {
@@ -263,6 +264,10 @@ double RunClock::wall_time_of(const Course& course, double wall_time, double tim
     const double awake = marks_.back().awake_share;
     const double straggling = longer_steps * cost(still_awake * awake) / cost((awake + before.awake_share) / 2);
     return pace * (course.coasting * (1 + longer_steps) / 2 + course.straggling * straggling);
+}
+
+double RunClock::wall_remaining() const {
+    return share_done_ < least_share_done ? std::numeric_limits<double>::quiet_NaN() : remaining_;
 }
 
 void RunClock::tick(double wall_time, double time, const std::function<Outlook()>& look) {

@@ -54,9 +54,10 @@ class RunClock {
     /// After a step. Calls `look` now and then, for at most a twentieth of the wall time; for more, a few times, where
     /// a run is short.
     void tick(double wall_time, double time, const std::function<Outlook()>& look);
-    [[nodiscard]] double expected_end() const { return end_; }          ///< s, simulated
-    [[nodiscard]] double wall_remaining() const { return remaining_; }  ///< s
-    [[nodiscard]] double share_done() const { return share_done_; }     ///< 0 to 1, never falls
+    [[nodiscard]] double expected_end() const { return end_; }  ///< s, simulated
+    /// s; NaN: too little is done to say.
+    [[nodiscard]] double wall_remaining() const;
+    [[nodiscard]] double share_done() const { return share_done_; }  ///< 0 to 1, never falls
 
   private:
     struct Mark {

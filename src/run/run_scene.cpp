@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include "core/decimals.hpp"
 #include "core/try.hpp"
 #include "run/depth_run.hpp"
 #include "run/forecast.hpp"
@@ -21,13 +22,14 @@ Outlook look_at(const scene::Scene& scene, const Run& run) {
     return outlook;
 }
 
-Progress progress_of(const Run& run, const RunClock& clock) {
+Progress progress_of(const scene::Scene& scene, const Run& run, const RunClock& clock) {
     const sim::StateSummary& state = run.summary();
     Progress progress{};
     progress.time = state.time;
     progress.end_time = run.model().solver.end_time;
     progress.real_time_factor = run.wall_time() > 0 ? state.time / run.wall_time() : 0;
     progress.front_chainage = run.observer().front_chainage();
+    progress.path_length = scene.flow_path.empty() ? 0 : scene.flow_path.length();
     progress.share_done = clock.share_done();
     progress.wall_remaining = clock.wall_remaining();
     progress.step = state.step;
@@ -64,7 +66,7 @@ Result<RunResult> run_scene(const scene::Scene& scene, const RunOptions& options
         show_frame();
         if (!options.on_progress) continue;
         run_clock.tick(run.wall_time(), run.summary().time, [&] { return look_at(scene, run); });
-        options.on_progress(progress_of(run, run_clock));
+        options.on_progress(progress_of(scene, run, run_clock));
     }
     if (run.phase() != RunPhase::fault) show_frame(true);
     return run.result();
@@ -75,9 +77,9 @@ void take_followed_path(scene::Scene& scene, const RunResult& result) {
     scene.flow_path = *result.observation.followed_path;
     scene.flow_path_origin = scene::PathOrigin::followed;
     scene.notes.push_back(
-        fmt::format("flow path: chainages are along the path that debris followed, {:.0f} m from the "
+        fmt::format("flow path: chainages are along the path that debris followed, {:.{}f} m from the "
                     "crown to the farthest deposit; the traced one was a first guess",
-                    scene.flow_path.length()));
+                    scene.flow_path.length(), decimals_for(scene.flow_path.length(), 0)));
 }
 
 }  // namespace talus::run

@@ -19,8 +19,9 @@ struct Progress {
     double time, end_time;  ///< s
     double real_time_factor;
     double front_chainage;  ///< m, farthest so far along the scene's path; NaN: none
+    double path_length;     ///< m, of that path; 0: none
     double share_done;      ///< 0 to 1
-    double wall_remaining;  ///< s, estimate
+    double wall_remaining;  ///< s, estimate; NaN: too little is done to say
     std::uint64_t step;
     std::uint32_t particles;
 };

@@ -171,37 +171,41 @@ VariantRun run_variant(const SceneSource& source, const Variant& variant, const 
     return run;
 }
 
-double SeriesClock::effort_after() const {
-    double sum = 0;
-    for (std::size_t i = run_; i < variants_.size(); ++i) sum += variants_[i].effort;
-    return sum;
+namespace {
+
+std::vector<double> efforts_of(const std::vector<Variant>& variants) {
+    std::vector<double> efforts = {1};  // of the base
+    for (const Variant& variant : variants) efforts.push_back(variant.effort);
+    return efforts;
 }
 
-SeriesProgress SeriesClock::at(const Progress& now) const {
-    const double elapsed = now.real_time_factor > 0 ? now.time / now.real_time_factor : 0;
-    double remaining = now.wall_remaining, before = 0, unit = elapsed + remaining;
-    if (run_ > 0) {
-        // The time at which debris comes to rest is known by now.
-        const double end = std::max(base_end_time_, now.time);
-        remaining = now.real_time_factor > 0 ? (end - now.time) / now.real_time_factor : 0;
-        unit = base_wall_time_;
-        before = unit;
-        for (std::size_t i = 0; i + 1 < run_; ++i) before += unit * variants_[i].effort;
-    }
-    const double left = remaining + unit * effort_after();
-    const double all = before + elapsed + left;
-    return {run_ + 1, variants_.size() + 1, run_ == 0 ? base_name : variants_[run_ - 1].name,
-            all > 0 ? (before + elapsed) / all : 0, left};
+}  // namespace
+
+SeriesClock::SeriesClock(std::vector<Variant> variants) : variants_(std::move(variants)), work_(efforts_of(variants_)) {
+    work_.begin(0, 0);
+}
+
+SeriesProgress SeriesClock::at(const Progress& now) {
+    now_ = before_ + (now.real_time_factor > 0 ? now.time / now.real_time_factor : 0);
+    work_.tick(run_, now_, now.wall_remaining);
+    return {run_ + 1, variants_.size() + 1, run_ == 0 ? base_name : variants_[run_ - 1].name, work_.share_done(now_),
+            work_.wall_remaining(now_)};
 }
 
 void SeriesClock::base_ended(const RunResult& result) {
-    base_wall_time_ = result.wall_time;
-    base_end_time_ = result.simulated_time;
-    run_ = 1;
+    now_ = result.wall_time;
+    next_begins();
 }
 
 void SeriesClock::variant_ended() {
+    next_begins();
+}
+
+void SeriesClock::next_begins() {
+    work_.end(run_, now_);
+    before_ = now_;
     ++run_;
+    if (run_ <= variants_.size()) work_.begin(run_, now_);
 }
 
 }  // namespace talus::run

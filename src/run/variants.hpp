@@ -9,6 +9,7 @@
 #include "core/result.hpp"
 #include "observe/peaks.hpp"
 #include "run/run_scene.hpp"
+#include "run/time_left.hpp"
 #include "scene/scene.hpp"
 
 /// Runs of a scene with some of its values set differently, beside its run as given (the base).
@@ -58,26 +59,27 @@ struct SeriesProgress {
     std::size_t run, count;  ///< the current run, from 1 (the base), and their number
     std::string_view name;   ///< of the variant; "as given" for the base
     double share_done;       ///< 0 to 1, of all runs
-    double wall_remaining;   ///< s, of all runs, an estimate
+    double wall_remaining;   ///< s, of all runs, an estimate; NaN: too little is done to say
 };
 
 /// Estimates the total time of the base and its variants.
 class SeriesClock {
   public:
-    explicit SeriesClock(std::vector<Variant> variants) : variants_(std::move(variants)) {}
+    explicit SeriesClock(std::vector<Variant> variants);
 
     /// `now`: of the current run.
-    [[nodiscard]] SeriesProgress at(const Progress& now) const;
+    [[nodiscard]] SeriesProgress at(const Progress& now);
     /// Call when the current run has ended and the next begins.
     void base_ended(const RunResult& result);
     void variant_ended();
 
   private:
-    [[nodiscard]] double effort_after() const;
+    void next_begins();
 
     std::vector<Variant> variants_;
-    std::size_t run_ = 0;                            // 0: the base
-    double base_wall_time_ = 0, base_end_time_ = 0;  // s
+    WorkClock work_;
+    std::size_t run_ = 0;          // 0: the base
+    double before_ = 0, now_ = 0;  // s of wall time: of the runs before, and of all so far
 };
 
 }  // namespace talus::run

@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "core/decimals.hpp"
 #include "scene/grid_cell.hpp"
 #include "scene/particle_spacing.hpp"
 #include "terrain/map_cell.hpp"
@@ -22,10 +23,11 @@ std::string terrain_line(const Scene& scene) {
         highest = std::max(highest, std::isnan(z) ? highest : z);
     }
     const GridGeometry& g = elevation.geometry;
+    const int decimals = decimals_for(std::max(g.extent().width(), g.extent().height()), 1);
     return fmt::format(
-        "terrain     {} x {} cells of {:.6g} m, {}, {:.1f} to {:.1f} m (vertical unit: {}), nodata {:.2g} %{}\n",
-        g.columns, g.rows, g.cell, scene.crs.label(), lowest, highest, scene.vertical_unit, 100 * scene.nodata_share,
-        scene.spec.terrain.extent ? ", cropped" : "");
+        "terrain     {} x {} cells of {:.6g} m, {}, {:.{}f} to {:.{}f} m (vertical unit: {}), nodata {:.2g} %{}\n",
+        g.columns, g.rows, g.cell, scene.crs.label(), lowest, decimals, highest, decimals, scene.vertical_unit,
+        100 * scene.nodata_share, scene.spec.terrain.extent ? ", cropped" : "");
 }
 
 std::string release_line(const Scene& scene, const terrain::Release& release) {
@@ -81,7 +83,8 @@ std::string describe_scene(const Scene& scene) {
     out += buildings_line(scene);
     out += scene.flow_path.empty()
                ? "flow path   none\n"
-               : fmt::format("flow path   {:.0f} m, {}\n", scene.flow_path.length(),
+               : fmt::format("flow path   {:.{}f} m, {}\n", scene.flow_path.length(),
+                             decimals_for(scene.flow_path.length(), 0),
                              scene.flow_path_origin == PathOrigin::file ? "from its file"
                              : follows_debris(scene) ? "traced downhill from the release, a first guess until the run"
                                                      : "traced downhill from the release");

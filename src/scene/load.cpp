@@ -13,6 +13,7 @@
 #include "geo/orthophoto.hpp"
 #include "scene/grid_cell.hpp"
 #include "scene/limits.hpp"
+#include "scene/output_defaults.hpp"
 #include "scene/particle_spacing.hpp"
 #include "scene/plausibility.hpp"
 #include "scene/viscosity_limit.hpp"
@@ -89,7 +90,8 @@ double total_volume(const Scene& scene) {
 
 Status load_terrain(const ParsedScene& parsed, Scene& scene) {
     const params::TerrainSpec& spec = parsed.spec.terrain;
-    Result<geo::Raster> raster = geo::read_terrain_raster(spec.file, spec.band, spec.extent);
+    Result<geo::Raster> raster =
+        geo::read_terrain_raster(spec.file, spec.band, spec.extent, spec.crs == params::CrsChoice::local);
     if (!raster) {
         std::string message = parsed.at("terrain.file") + ": " + raster.error().message;
         std::error_code code;
@@ -102,6 +104,11 @@ Status load_terrain(const ParsedScene& parsed, Scene& scene) {
     scene.crs = raster->crs;
     scene.vertical_unit = raster->vertical_unit;
     scene.nodata_share = raster->nodata_share;
+    if (scene.crs.local) {
+        scene.notes.emplace_back(
+            "terrain: local coordinates, whose place on the globe is not known: results.kml is left out, and "
+            "stac_item.json states no place");
+    }
     if (scene.vertical_unit == "not stated") {
         scene.notes.emplace_back("terrain: the file does not state its vertical unit, taken as metres");
     }
@@ -171,11 +178,13 @@ Result<Scene> assemble_scene(const ParsedScene& parsed) {
     TALUS_TRY(load_buildings(parsed, scene));
     TALUS_TRY(load_barriers(parsed, scene));
     TALUS_TRY(load_flow_path(parsed, scene));
+    shorten_outputs(scene);
     TALUS_TRY(load_observations(parsed, scene));
     TALUS_TRY(load_gauges(parsed, scene));
     TALUS_TRY(load_zoom(parsed, scene));
     TALUS_TRY(check_alerts(parsed, scene));
     TALUS_TRY(particles ? check_limits(parsed, scene) : check_depth_averaged(parsed, scene));
+    settle_geoid_height(scene);
     note_implausible_terrain(scene);
     if (particles) {
         note_coarse_particles(scene);

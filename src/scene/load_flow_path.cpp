@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include "core/decimals.hpp"
 #include "geo/vector.hpp"
 #include "scene/load.hpp"
 #include "scene/polygons.hpp"
@@ -127,9 +128,9 @@ Status trace_from_release(const ParsedScene& parsed, Scene& scene) {
         return {};
     }
     scene.flow_path = terrain::FlowPath(points, scene.spec.flow_path.corridor_width);
-    scene.notes.push_back(fmt::format("flow path: traced downhill from {}, {:.0f} m from its crown at {} to {}",
-                                      relief.label, scene.flow_path.length(), place_text(points.front()),
-                                      place_text(points.back())));
+    scene.notes.push_back(fmt::format("flow path: traced downhill from {}, {:.{}f} m from its crown at {} to {}",
+                                      relief.label, scene.flow_path.length(), decimals_for(scene.flow_path.length(), 0),
+                                      place_text(points.front()), place_text(points.back())));
     note_far_releases(scene, points);
     return {};
 }

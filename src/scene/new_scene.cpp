@@ -93,6 +93,7 @@ ParsedScene scene_from(const NewSceneOptions& options) {
     ParsedScene parsed;
     parsed.file = options.folder / "scene.toml";
     parsed.spec.terrain.file = absolute_name(options.dem);
+    if (options.local) parsed.spec.terrain.crs = params::CrsChoice::local;
     parsed.spec.terrain.orthophoto = absolute_name(options.orthophoto);
     parsed.spec.buildings.file = absolute_name(options.buildings);
     parsed.spec.scene.title = options.title;

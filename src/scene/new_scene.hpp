@@ -18,6 +18,7 @@ struct NewSceneOptions {
     std::filesystem::path thickness_raster;  ///< or a raster of thickness, m
     std::filesystem::path buildings;         ///< polygons or a mesh; empty: none
     std::filesystem::path orthophoto;        ///< empty: none
+    bool local = false;                      ///< the terrain has local coordinates and states no reference system
     std::string title;                       ///< empty: that of the folder
     std::optional<double> thickness;         ///< m, normal to the slope
     std::optional<double> volume;            ///< m3

@@ -112,7 +112,7 @@ std::optional<double> LiveRun::expected_end() const {
 
 std::optional<double> LiveRun::wall_remaining() const {
     if (phase() != run::RunPhase::ready) return 0;
-    if (!expected_end()) return {};
+    if (!expected_end() || std::isnan(clock_.wall_remaining())) return {};
     return clock_.wall_remaining();
 }
 

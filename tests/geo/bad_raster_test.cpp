@@ -193,7 +193,7 @@ TEST_F(BadRaster, UndeclaredNodata) {
 
 TEST_F(BadRaster, FileNamesWithBlanksAreQuotedInCommands) {
     const std::string file = test::write_raster(folder_.file("my dem.tif"), {.epsg = 0}, pattern);
-    EXPECT_THAT(refusal(file), EndsWith("EPSG:nnnn '" + file + "'"));
+    EXPECT_THAT(refusal(file), AllOf(HasSubstr("EPSG:nnnn '" + file + "'"), HasSubstr("terrain.crs = \"local\"")));
 }
 
 }  // namespace

@@ -164,14 +164,15 @@ TEST(SeriesClock, AddsUpAllRuns) {
     clock.base_ended(base);
     const SeriesProgress second = clock.at(progress_at(5, 20, 0.25));
     EXPECT_EQ(second.name, "a");
-    EXPECT_DOUBLE_EQ(second.wall_remaining, 20 + 20 * 3);
-    EXPECT_DOUBLE_EQ(second.share_done, 40.0 / 120);
+    // 20 s of this run have passed, 60 s are left of it as it says itself: so two runs of effort 1 + 2 take 100 s.
+    EXPECT_DOUBLE_EQ(second.wall_remaining, 60 + 3 * 100. / 3);
+    EXPECT_DOUBLE_EQ(second.share_done, 40.0 / 200);
 
     clock.variant_ended();
     const SeriesProgress third = clock.at(progress_at(12, 20, 0.2));
     EXPECT_EQ(third.run, 3U);
-    EXPECT_DOUBLE_EQ(third.wall_remaining, 0) << "beyond the base's end nobody knows";
-    EXPECT_DOUBLE_EQ(third.share_done, 1);
+    EXPECT_DOUBLE_EQ(third.wall_remaining, 40) << "a variant may go on for longer than the base";
+    EXPECT_DOUBLE_EQ(third.share_done, 100.0 / 140);
 }
 
 }  // namespace

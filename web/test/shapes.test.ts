@@ -6,7 +6,7 @@ import type { Grid } from "../src/protocol/grid";
 import type { Point, SceneInfo } from "../src/protocol/messages";
 import { Relief } from "../src/scene/relief";
 import { band } from "../src/scene/solids";
-import { bytes, count, fixed, number, quantity, tick, unitText } from "../src/state/format";
+import { bytes, count, decimalsFor, fixed, number, quantity, tick, unitText } from "../src/state/format";
 import { area, footprintArea, crossesItself, inside, length, releaseVolume } from "../src/state/shapes";
 
 /** A plane that rises by `slope` to the east, 100 x 100 cells of 1 m in national coordinates. */
@@ -111,6 +111,9 @@ describe("numbers and units", () => {
     expect(quantity(null, "m")).toBe("–");
     expect(number(-3.14159)).toBe("\u22123.14");
     expect(fixed(-0.5, 1)).toBe("\u22120.5");
+    expect(decimalsFor(0.0112, 1)).toBe(4);
+    expect(decimalsFor(2.47, 0)).toBe(2);
+    expect([0, 10, 612.3, NaN].map((size) => decimalsFor(size, 1))).toEqual([1, 1, 1, 1]);
     expect(unitText("kg/m3")).toBe("kg/m³");
     expect(unitText("m2/s")).toBe("m²/s");
     expect(count(5673)).toBe("5\u202f673");

@@ -5,7 +5,7 @@ import type { Impacts, Place, Series } from "../protocol/messages";
 import { placeOnPath } from "../scene/scenario_view";
 import type { Stage } from "../scene/stage";
 import { course, endOfFlow, frontAt, hitUntil, pictures_hz, type Moment } from "../state/briefing";
-import { fixed, quantity } from "../state/format";
+import { decimalsFor, fixed } from "../state/format";
 import type { Twin } from "../state/twin";
 import { webm, type Encoded } from "../state/webm";
 import { button, h } from "../ui/dom";
@@ -196,7 +196,7 @@ class Briefing {
     const front = moment.part === "before" ? null : frontAt(series, moment.run_s);
     line(`t = ${fixed(moment.run_s, 1)} s`, unit, height - 2.6 * unit, 1.7 * unit, 600);
     const velocity = front?.velocity_mps;
-    line(front === null ? twin.scene.title : `Front at chainage ${quantity(Math.round(front.chainage_m), "m")}` + (typeof velocity === "number" ? `, ${fixed(velocity, 1)} m/s` : ""),
+    line(front === null ? twin.scene.title : `Front at chainage ${`${fixed(front.chainage_m, decimalsFor(twin.scene.flow_path?.chainage_m.at(-1) ?? 0, 0))}\u202fm`}` + (typeof velocity === "number" ? `, ${fixed(velocity, 1)} m/s` : ""),
       unit, height - unit, unit);
     const hit = hitUntil(impacts, moment.run_s);
     hit.slice(0, 4).forEach(({ name, at_s }, k) => line(`${name} hit at ${fixed(at_s, 1)} s`, width - unit, height - (1 + 1.25 * k) * unit, (k === 0 ? 1 : 0.85) * unit, k === 0 ? 600 : 400, "right"));

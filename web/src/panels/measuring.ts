@@ -3,7 +3,7 @@ import type { Point } from "../protocol/messages";
 import type { Drawing } from "../scene/drawing";
 import type { Stage } from "../scene/stage";
 import { watchAll } from "../state/cell";
-import { fixed, quantity } from "../state/format";
+import { decimalsFor, fixed, quantity } from "../state/format";
 import { areaMeasures, lineMeasures } from "../state/measures";
 import type { Twin } from "../state/twin";
 import { button, h } from "../ui/dom";
@@ -47,9 +47,10 @@ function rows(line: readonly Point[], stage: Stage, twin: Twin): [string, string
   const relief = stage.reliefOf(twin.edited.value);
   const m = lineMeasures(line, relief);
   const inside = areaMeasures(line, relief);
+  const digits = decimalsFor(m.plan_m, 1);
   const rows: [string, string][] = [
     ["Distance", `${quantity(m.plan_m, "m")} (${quantity(m.ground_m, "m")} over the ground)`],
-    ["Height difference", `${m.rise_m > 0 ? "+" : m.rise_m < 0 ? "−" : ""}${fixed(Math.abs(m.rise_m), 1)}\u202fm (${fixed(m.lowest_m, 1)} to ${fixed(m.highest_m, 1)}\u202fm)`],
+    ["Height difference", `${m.rise_m > 0 ? "+" : m.rise_m < 0 ? "−" : ""}${fixed(Math.abs(m.rise_m), digits)}\u202fm (${fixed(m.lowest_m, digits)} to ${fixed(m.highest_m, digits)}\u202fm)`],
     ["Slope", `${fixed(m.slope_deg, 1)}° end to end, up to ${fixed(m.steepest_deg, 0)}°`]];
   if (inside) rows.push(["Area inside", `${quantity(inside.plan_m2, "m2")} (${quantity(inside.ground_m2, "m2")} over the ground)`]);
   return rows;

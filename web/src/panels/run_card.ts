@@ -1,6 +1,6 @@
 // The numbers of the run that are always visible, and the mass balance.
 import { watchAll } from "../state/cell";
-import { bytes, count, fixed, percent, quantity } from "../state/format";
+import { bytes, count, decimalsFor, fixed, percent, quantity } from "../state/format";
 import { endText } from "../state/time_left";
 import type { Twin } from "../state/twin";
 import { h } from "../ui/dom";
@@ -32,7 +32,7 @@ export function runCard(twin: Twin): HTMLElement {
     const live = twin.replay_s.value === null;
     front.value.textContent = quantity(s?.front_velocity_mps, "m/s");
     fastest.value.textContent = quantity(s?.largest_speed_mps, "m/s");
-    chainage.value.textContent = s?.front_chainage_m === null || !s ? "–" : `${fixed(s.front_chainage_m, 0)} m`;
+    chainage.value.textContent = s?.front_chainage_m === null || !s ? "–" : `${fixed(s.front_chainage_m, decimalsFor(twin.scene.flow_path?.chainage_m.at(-1) ?? 0, 0))} m`;
     particles.value.textContent = count(s?.particles);
     steps.value.textContent = s && live ? `${fixed(s.steps_per_second, 0)} /s` : "–";
     real.value.textContent = s && live ? `${fixed(s.real_time_factor, 2)} ×` : "–";
@@ -90,9 +90,11 @@ export function balance(twin: Twin): HTMLElement {
       return h("tr", {}, h("th", { scope: "row" }, dot, label), h("td", {}, value));
     };
     const error = s.volume_released_m3 + s.volume_entrained_m3 - s.volume_held_m3 - s.volume_moving_m3 - s.volume_deposited_m3 - s.volume_left_m3;
-    body.replaceChildren(...parts.map(([key, label, colour]) => row(label, `${fixed(s[key], 1)} m³`, colour)), row("All releases", `${fixed(s.volume_released_m3, 1)} m³`),
-      ...(s.volume_entrained_m3 > 0 ? [row("Entrained from the bed", `${fixed(s.volume_entrained_m3, 1)} m³`)] : []),
-      row("Residual", `${fixed(Math.abs(error) < 0.05 ? 0 : error, 1)} m³`));
+    const digits = decimalsFor(s.volume_released_m3 + s.volume_entrained_m3, 1);
+    const volume = (value: number): string => `${fixed(value, digits)} m³`;
+    body.replaceChildren(...parts.map(([key, label, colour]) => row(label, volume(s[key]), colour)), row("All releases", volume(s.volume_released_m3)),
+      ...(s.volume_entrained_m3 > 0 ? [row("Entrained from the bed", volume(s.volume_entrained_m3))] : []),
+      row("Residual", volume(Math.abs(error) < 0.5 * 10 ** -digits ? 0 : error)));
     more.tBodies[0]?.replaceChildren(row("Step", live ? count(s.step) : "–"), row("Compression, mean", percent(s.mean_compression, 2)),
       row("Particles above 3 %", percent(s.overcompressed_share, 2)), row("Compression, largest", percent(s.max_compression, 2)), row("Recording", `${s.recording.frames} frames, ${bytes(s.recording.bytes)}`),
       row("State hash", live ? (s.hash ?? "while paused") : "–"));

@@ -2,7 +2,7 @@
 import type { Line2 } from "three/examples/jsm/lines/Line2.js";
 import type { Place } from "../protocol/messages";
 import { watchAll } from "../state/cell";
-import { fixed, quantity } from "../state/format";
+import { decimalsFor, fixed, quantity } from "../state/format";
 import type { Twin } from "../state/twin";
 import { h } from "../ui/dom";
 import { inkOn } from "./colour";
@@ -87,7 +87,9 @@ export function marks(twin: Twin, stage: Stage, layers: ShownLayers): HTMLElemen
       }
       const name = twin.layer.value;
       const value = name === "none" ? null : layers.valueAt(hit.scenario, hit.world[0], hit.world[1]);
-      readOut.textContent = `E ${fixed(hit.world[0], 1)}  N ${fixed(hit.world[1], 1)}  ground ${fixed(hit.world[2], 1)} m` +
+      const [west, south, east, north] = twin.scene.extent_m;
+      const digits = decimalsFor(Math.max(east - west, north - south), 1);
+      readOut.textContent = `E ${fixed(hit.world[0], digits)}  N ${fixed(hit.world[1], digits)}  ground ${fixed(hit.world[2], digits)} m` +
         (name !== "none" && value !== null ? `  ${infoOf(name, twin.ensembles.value).title.toLowerCase()}${layers.isDifference ? " B − A" : ""} ${quantity(value, infoOf(name, twin.ensembles.value).unit)}` : "");
     };
     if (now - sent_ms > markEvery_ms) tell();

@@ -22,7 +22,7 @@ import { disposeLine, pixelLine } from "./lines";
 import type { Relief } from "./relief";
 import { Sky } from "./sky";
 import { barrierSolid, disposeSolid, houseSolid, plainHouse } from "./solids";
-import { quantity } from "../state/format";
+import { quantity, tick } from "../state/format";
 
 export const releaseColour = "#a3262a";
 /** What fits over the view; the list of notes has the whole. */
@@ -121,7 +121,7 @@ export class ScenarioView {
     const path = this.shared.scene.flow_path;
     if (!path) return [];
     const last = path.chainage_m[path.chainage_m.length - 1] ?? 0;
-    const step = last > 4000 ? 500 : last > 1500 ? 200 : last > 600 ? 100 : last > 300 ? 50 : 25;
+    const step = chainageStep(last);
     const marks = [];
     for (let chainage = 0; chainage <= last; chainage += step) {
       const place = placeOnPath(this.shared.scene, chainage);
@@ -225,7 +225,7 @@ export class ScenarioView {
     for (const note of this.setup?.notes ?? []) labels.push({ at: relief.local(note.x_m, note.y_m, 0.5), text: shortened(note.name), kind: "note", priority: 9 });
     if (this.namesShown) {
       for (const { chainage, at } of this.chainageMarks()) {
-        labels.push({ at: relief.local(at[0], at[1], 1), text: chainage === 0 ? "0 m" : `${chainage}`, kind: "chainage", priority: 2, farthest: 1.6 * size });
+        labels.push({ at: relief.local(at[0], at[1], 1), text: chainage === 0 ? "0 m" : chainage < 20 ? tick(chainage) : `${chainage}`, kind: "chainage", priority: 2, farthest: 1.6 * size });
       }
       for (const observation of scene.observations) {
         const place = placeOnPath(scene, observation.chainage_m);
@@ -290,6 +290,14 @@ export class ScenarioView {
     this.wideAreas.dispose();
     this.labels.layer.remove();
   }
+}
+
+/** Between the marks of a path of so many metres: a fifth to an eighth of one in a laboratory. */
+export function chainageStep(length_m: number): number {
+  if (length_m >= 20) return length_m > 4000 ? 500 : length_m > 1500 ? 200 : length_m > 600 ? 100 : length_m > 300 ? 50 : 25;
+  const power = 10 ** Math.floor(Math.log10(Math.max(length_m, 0.01) / 5));
+  const digit = length_m / 5 / power;
+  return (digit >= 5 ? 5 : digit >= 2 ? 2 : 1) * power;
 }
 
 /** World place at a chainage and the unit vector across the path there. */

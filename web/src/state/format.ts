@@ -38,6 +38,11 @@ export function fixed(value: number | null | undefined, after: number): string {
 export function percent(share: number | null, after: number): string {
   return share === null ? nothing : `${fixed(100 * share, after)} %`;
 }
+/** Decimals of lengths in m or volumes in m3 beside each other of which the largest is `size`, as core/decimals.hpp has them. */
+export function decimalsFor(size: number, least: number): number {
+  const magnitude = Math.abs(size);
+  return magnitude > 0 && magnitude < 10 ? Math.max(least, decimals(magnitude)) : least;
+}
 export function bytes(value: number | null): string {
   if (value === null) return nothing;
   for (const [size, unit] of [[1e9, "GB"], [1e6, "MB"], [1e3, "kB"]] as const) {
