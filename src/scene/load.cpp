@@ -10,7 +10,9 @@
 #include "core/coordinate_text.hpp"
 #include "core/hash.hpp"
 #include "core/try.hpp"
+#include "geo/file_name.hpp"
 #include "geo/orthophoto.hpp"
+#include "geo/terrain_frame.hpp"
 #include "scene/grid_cell.hpp"
 #include "scene/limits.hpp"
 #include "scene/particle_spacing.hpp"
@@ -122,7 +124,16 @@ Status load_terrain(const ParsedScene& parsed, Scene& scene) {
     return {};
 }
 
-void record_input(const std::string& role, const std::string& path, Scene& scene) {
+void note_changes(const std::string& label, const geo::PolygonLayer& layer, Scene& scene) {
+    if (!layer.reprojection.empty()) scene.notes.push_back(label + ": " + layer.reprojection);
+    if (layer.closed_lines == 0) return;
+    scene.notes.push_back(layer.closed_lines == 1
+                              ? label + ": a closed line is taken as a polygon"
+                              : fmt::format("{}: {} closed lines are taken as polygons", label, layer.closed_lines));
+}
+
+void record_input(const std::string& role, const std::string& name, Scene& scene) {
+    const std::string path = geo::file_on_disk(name);
     std::error_code code;
     if (!std::filesystem::is_regular_file(path, code)) return;  // a GDAL name such as /vsizip/...: nothing to hash
     hash_file(scene.inputs.emplace_back(InputFile{role, path, 0, ""}));

@@ -183,7 +183,7 @@ Status load_footprints(const ParsedScene& parsed, Scene& scene, std::size_t& out
     const Result<geo::PolygonLayer> layer = read_polygons(spec.file, spec.layer, scene.crs);
     if (!layer) return Error{parsed.at("buildings.file") + ": " + layer.error().message};
     record_input("buildings", spec.file, scene);
-    if (!layer->reprojection.empty()) scene.notes.push_back("buildings: " + layer->reprojection);
+    note_changes("buildings", *layer, scene);
     TALUS_TRY(check_attribute(parsed, "buildings.height_attribute", spec.height_attribute, *layer));
     TALUS_TRY(check_attribute(parsed, "buildings.name_attribute", spec.name_attribute, *layer));
     TALUS_TRY(check_attribute(parsed, "buildings.resistance_attribute", spec.resistance_attribute, *layer));

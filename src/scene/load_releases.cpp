@@ -165,7 +165,7 @@ Result<terrain::Release> load_release(const ParsedScene& parsed, std::size_t ind
         const Result<geo::PolygonLayer> layer = read_polygons(spec.file, spec.layer, scene.crs);
         if (!layer) return refused("file", layer.error());
         record_input(label, spec.file, scene);
-        if (!layer->reprojection.empty()) scene.notes.push_back(label + ": " + layer->reprojection);
+        note_changes(label, *layer, scene);
         for (std::size_t feature = 0; feature < layer->features.size(); ++feature) {
             const Result<double> thickness = feature_thickness(spec, *layer, feature);
             if (!thickness) return refused("thickness_attribute", thickness.error());
