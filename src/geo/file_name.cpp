@@ -129,6 +129,13 @@ Result<LayerOfFile> split_layer(const std::string& name) {
     return LayerOfFile{name.substr(0, bar), rest.substr(word.size())};
 }
 
+bool is_gdal_name(const std::string& name) {
+    if (name.starts_with("/vsi")) return true;
+    const std::size_t colon = name.find(':');
+    return colon != std::string::npos && colon >= 2 &&
+           name.find_first_not_of("ABCDEFGHIJKLMNOPQRSTUVWXYZ_0123456789") == colon;
+}
+
 std::string file_on_disk(const std::string& name) {
     if (is_file(name) || name.starts_with("/vsi")) return name;
     const Result<LayerOfFile> split = split_layer(name);

@@ -16,6 +16,9 @@ struct LayerOfFile {
 /// else behind the bar, such as |layerid=0.
 [[nodiscard]] Result<LayerOfFile> split_layer(const std::string& name);
 
+/// Whether it is a name of GDAL's and no path, such as NETCDF:"file.nc":band or /vsizip/...
+[[nodiscard]] bool is_gdal_name(const std::string& name);
+
 /// The file on disk that a name leads to, without layer and place in an archive: "dem.zip/valley.tif" is in "dem.zip".
 /// Names of GDAL's, such as /vsizip/dem.zip, are left as they are.
 [[nodiscard]] std::string file_on_disk(const std::string& name);

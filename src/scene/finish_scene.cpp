@@ -30,13 +30,6 @@ Result<std::string> expand_environment(const std::string& text) {
     }
 }
 
-/// GDAL also opens names that are not paths, such as NETCDF:"file.nc":band.
-bool is_driver_name(const std::string& text) {
-    const std::size_t colon = text.find(':');
-    return colon != std::string::npos && colon >= 2 &&
-           text.find_first_not_of("ABCDEFGHIJKLMNOPQRSTUVWXYZ_0123456789") == colon;
-}
-
 bool can_name_a_layer(const params::Section& section, const params::Parameter& parameter) {
     return section.find("layer") != nullptr && (parameter.key == "file" || parameter.key == "polygon_file");
 }
@@ -79,7 +72,7 @@ Status resolve_paths(ParsedScene& scene) {
                 if (Status s = check_input_file(path); !s) {
                     return Error{scene.at(key_path(section, index, parameter)) + ": " + s.error().message};
                 }
-                parameter.set(scene.spec, index, is_driver_name(*file) ? *file : path.lexically_normal().string());
+                parameter.set(scene.spec, index, geo::is_gdal_name(*file) ? *file : path.lexically_normal().string());
             }
         }
     }

@@ -89,6 +89,18 @@ double total_volume(const Scene& scene) {
     return volume;
 }
 
+void note_terrain_file(const geo::TerrainFrame& frame, Scene& scene) {
+    if (frame.eight_bit) {
+        scene.notes.emplace_back(
+            "terrain: the file holds 8-bit numbers, of which there are 256: these are rarely elevations; if it is a "
+            "hillshade or another picture, use the raster of elevations that it was made from");
+    }
+    if (frame.holes_read_0) {
+        scene.notes.emplace_back(
+            "terrain: parts of the file were never written, and it declares no nodata value: these parts read as 0 m");
+    }
+}
+
 Status load_terrain(const ParsedScene& parsed, Scene& scene) {
     const params::TerrainSpec& spec = parsed.spec.terrain;
     Result<geo::Raster> raster = geo::read_terrain_raster(spec.file, spec.band, spec.extent);
@@ -101,6 +113,8 @@ Status load_terrain(const ParsedScene& parsed, Scene& scene) {
         return Error{message};
     }
     record_input("terrain", spec.file, scene);
+    TALUS_ASSIGN(const geo::TerrainFrame frame, geo::read_terrain_frame(spec.file, spec.band));
+    note_terrain_file(frame, scene);
     scene.crs = raster->crs;
     scene.vertical_unit = raster->vertical_unit;
     scene.nodata_share = raster->nodata_share;

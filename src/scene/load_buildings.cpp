@@ -12,6 +12,7 @@
 #include "scene/known_ground.hpp"
 #include "scene/load.hpp"
 #include "scene/polygons.hpp"
+#include "scene/warning.hpp"
 
 namespace talus::scene {
 namespace {
@@ -95,10 +96,10 @@ void leave_out_buildings_on_releases(Scene& scene) {
         for (const terrain::Release& release : scene.releases) {
             const double area = shared_area(release, building);
             if (area <= 0) continue;
-            scene.notes.push_back(
-                fmt::format("building \"{}\" stands on release \"{}\" with {:.3g} m2 and was left out: "
-                            "the ground under it fails",
-                            building.name, release.name, area));
+            scene.notes.push_back(as_warning(
+                fmt::format("building \"{}\" stands on release \"{}\" with {:.3g} m2 and was left out: the ground "
+                            "under it fails, and no damage to it is computed",
+                            building.name, release.name, area)));
             return true;
         }
         return false;
