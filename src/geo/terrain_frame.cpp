@@ -18,11 +18,10 @@ std::string name_for_programs(const std::string& file) {
     return name ? *name : file;
 }
 
-/// `condition` on the stored numbers A: "A<250".
-std::string calc_command(const std::string& file, int band, const std::string& condition) {
-    return fmt::format(
-        "gdal_calc.py -A {} --A_band={} --calc='where({},-9999,A)' --type=Float32 --NoDataValue=-9999 --outfile={}",
-        shell_quoted(name_for_programs(file)), band, condition, mended_name(file, "_nodata", ".tif"));
+/// `result`: of the stored numbers A.
+std::string calc_command(const std::string& file, int band, const std::string& result, const char* suffix) {
+    return fmt::format("gdal_calc.py -A {} --A_band={} --calc='{}' --type=Float32 --NoDataValue=-9999 --outfile={}",
+                       shell_quoted(name_for_programs(file)), band, result, mended_name(file, suffix, ".tif"));
 }
 
 double stored(const RasterSource& source, double value) {
@@ -52,14 +51,23 @@ std::string declare_nodata_command(const std::string& file, int band, double val
     const Result<RasterSource> source = open_raster(file, band);
     const double number = source ? stored(*source, value) : value;
     // The value that is declared already would count as elevations with another one.
-    if (source && source->nodata) return calc_command(file, band, fmt::format("A=={:.10g}", number));
+    if (source && source->nodata)
+        return calc_command(file, band, fmt::format("where(A=={:.10g},-9999,A)", number), "_nodata");
     return fmt::format("gdal_translate -a_nodata {:.10g} {} {}", number, shell_quoted(name_for_programs(file)),
                        mended_name(file, "_nodata", ".tif"));
 }
 
 std::string cut_below_command(const std::string& file, int band, double value) {
     const Result<RasterSource> source = open_raster(file, band);
-    return calc_command(file, band, fmt::format("A<{:.6g}", source ? stored(*source, value) : value));
+    const double number = source ? stored(*source, value) : value;
+    return calc_command(file, band, fmt::format("where(A<{:.6g},-9999,A)", number), "_nodata");
+}
+
+std::string scale_command(const std::string& file, int band, double factor) {
+    const Result<RasterSource> source = open_raster(file, band);
+    const double scale = source ? source->scale : 1, offset = source ? source->offset : 0;
+    const std::string added = offset != 0 ? fmt::format("{:+.10g}", offset * factor) : "";
+    return calc_command(file, band, fmt::format("A*{:.10g}{}", scale * factor, added), "_m");
 }
 
 }  // namespace talus::geo

@@ -27,6 +27,9 @@ struct TerrainFrame {
 /// The command that writes a copy in which cells of `value`, in m, are nodata.
 [[nodiscard]] std::string declare_nodata_command(const std::string& file, int band, double value);
 
+/// The command that writes a copy with its elevations multiplied.
+[[nodiscard]] std::string scale_command(const std::string& file, int band, double factor);
+
 /// The command that writes a copy in which all cells below `value`, in m, are nodata.
 [[nodiscard]] std::string cut_below_command(const std::string& file, int band, double value);
 

@@ -7,6 +7,7 @@
 
 #include <fmt/format.h>
 
+#include "core/angle.hpp"
 #include "core/coordinate_text.hpp"
 #include "core/hash.hpp"
 #include "core/try.hpp"
@@ -17,6 +18,7 @@
 #include "scene/limits.hpp"
 #include "scene/particle_spacing.hpp"
 #include "scene/plausibility.hpp"
+#include "scene/suspect_ground.hpp"
 #include "scene/viscosity_limit.hpp"
 
 namespace talus::scene {
@@ -201,7 +203,10 @@ Result<Scene> assemble_scene(const ParsedScene& parsed) {
     TALUS_TRY(load_zoom(parsed, scene));
     TALUS_TRY(check_alerts(parsed, scene));
     TALUS_TRY(particles ? check_limits(parsed, scene) : check_depth_averaged(parsed, scene));
-    note_implausible_terrain(scene);
+    const ReachableGround reachable =
+        reachable_ground(scene.terrain, scene.releases, travel_angle_deg / degrees_per_radian);
+    TALUS_TRY(check_missing_data(parsed, reachable, scene));
+    note_implausible_terrain(reachable, scene);
     if (particles) {
         note_coarse_particles(scene);
         note_unused_by_particles(scene);

@@ -20,6 +20,7 @@
 #include "scene/load.hpp"
 #include "scene/new_release.hpp"
 #include "scene/new_terrain.hpp"
+#include "scene/reach.hpp"
 
 namespace talus::scene {
 namespace {

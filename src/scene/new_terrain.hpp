@@ -8,9 +8,6 @@
 /// The terrain of a new scene: the part of a raster that matters.
 namespace talus::scene {
 
-/// Lower than the travel angles of observed hillslope and channelised debris flows: the ground outside is not reached.
-inline constexpr double travel_angle_deg = 11;
-
 /// Cells of the raster along an edge of a cell of `cell` m. Errors: it is finer, or no whole multiple.
 [[nodiscard]] Result<int> coarsening(const std::string& file, const geo::TerrainFrame& frame, double cell);
 
