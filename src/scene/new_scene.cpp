@@ -150,10 +150,10 @@ Status choose_thickness(ParsedScene& parsed, const geo::PolygonLayer& layer) {
     if (release.thickness || release.volume || !release.thickness_raster.empty()) return {};
     release.thickness_attribute = find_attribute(layer, thickness_attributes);
     if (!release.thickness_attribute.empty()) return {};
-    return Error{
-        fmt::format("{}: how thick the release is, is not said: give --thickness-m M (normal to the slope) or "
-                    "--volume-m3 M3, or the polygons an attribute {} (in any case; {})",
-                    release.file, fmt::join(thickness_attributes, " or "), attributes_text(layer))};
+    return Error{fmt::format(
+        "{}: how thick the release is, is not said: give its thickness, normal to the slope "
+        "(--thickness-m M), or its volume (--volume-m3 M3), or its polygons an attribute {} (in any case; {})",
+        release.file, fmt::join(thickness_attributes, " or "), attributes_text(layer))};
 }
 
 /// Where the release lies; of a raster of thickness, all of that.

@@ -20,7 +20,7 @@ const slots: readonly (readonly [DraftRole, string, string])[] = [
 export class NewScene {
   private readonly said = h("div", { class: "new-said", "aria-live": "polite" });
   private readonly title = h("input", { type: "text", maxlength: 100, "aria-label": "Title of the scene", placeholder: "Title", oninput: () => this.later() });
-  private readonly amount = h("input", { type: "number", step: "any", min: 0, "aria-label": "Thickness or volume", placeholder: "Default 2 m", onchange: () => this.later() });
+  private readonly amount = h("input", { type: "number", step: "any", min: 0, "aria-label": "Thickness or volume", placeholder: "Not given", onchange: () => this.later() });
   private readonly unit = h("span", { class: "muted" }, "m, normal to the slope");
   private readonly amounts = h("div", { class: "row wrap" }, choice("How much is released", [["thickness", "Thickness"], ["volume", "Volume"]], "thickness", (value) => {
     this.byVolume = value === "volume";
