@@ -166,7 +166,7 @@ void note_raster_volume(const std::string& label, const terrain::Release& releas
     if (!release.spec.file.empty()) {
         const double outside = volume_outside(release);
         text += outside > 0
-                    ? fmt::format("; {:.4g} m3 of these ({:.2g} %) lie outside the polygons and are not released",
+                    ? fmt::format("; {:.6g} m3 of these ({:.2g} %) lie outside the polygons and are not released",
                                   outside, 100 * outside / whole)
                     : std::string("; none of these lie outside the polygons");
     }
