@@ -37,7 +37,7 @@ bool ends_with(const std::string& name, std::string_view ending) {
 std::string archive_in(const std::string& name) {
     const std::string lower = lower_case(name);
     for (std::size_t at = lower.find(".zip"); at != std::string::npos; at = lower.find(".zip", at + 4)) {
-        const std::string archive = name.substr(0, at + 4);
+        std::string archive = name.substr(0, at + 4);
         if ((at + 4 == name.size() || name[at + 4] == '/') && is_file(archive)) return archive;
     }
     return "";
@@ -90,6 +90,7 @@ Result<std::string> name_in_zip(const std::string& file, const std::string& arch
         }
         if (found.size() > 1) {
             std::vector<std::string> names;
+            names.reserve(found.size());
             for (const Member& one : found) names.push_back(shell_quoted(file + "/" + one.name));
             const bool more = names.size() > most_named;
             names.resize(std::min(names.size(), most_named));

@@ -199,7 +199,8 @@ Status check_raw_size(const std::string& file, GDALDataset& data) {
     constexpr std::array raw_drivers = {"ENVI", "EHdr", "GenBin", "ISCE", "ROI_PAC", "RRASTER"};
     if (std::find(raw_drivers.begin(), raw_drivers.end(), driver) == raw_drivers.end()) return {};
     VSIStatBufL stat;
-    if (VSIStatL(file.c_str(), &stat) != 0) return {};
+    // Of the file that GDAL opened: `file` can be an archive.
+    if (VSIStatL(data.GetDescription(), &stat) != 0) return {};
     double expected = 0;
     for (int b = 1; b <= data.GetRasterCount(); ++b) {
         expected += static_cast<double>(data.GetRasterXSize()) * data.GetRasterYSize() *

@@ -48,6 +48,7 @@ Status choose_features(const std::string& file, const std::string& which, geo::P
     const std::size_t equals = which.find('=');
     if (equals == std::string::npos) {
         std::vector<std::string> numbers;
+        numbers.reserve(layer.features.size());
         for (const geo::PolygonFeature& feature : layer.features) numbers.push_back(std::to_string(feature.fid));
         const std::optional<std::int64_t> fid = whole_number(which);
         std::erase_if(layer.features, [&](const geo::PolygonFeature& feature) { return feature.fid != fid; });
@@ -91,11 +92,14 @@ Status write_features(const geo::PolygonLayer& layer, const geo::Crs& crs, const
         }
     }
     std::vector<geo::Field> fields;
+    fields.reserve(is_text.size());
     for (const auto& [name, text] : is_text) fields.push_back({name, text});
     std::vector<geo::OutputFeature> features;
+    features.reserve(layer.features.size());
     for (const geo::PolygonFeature& feature : layer.features) {
         geo::OutputFeature& out = features.emplace_back();
         out.polygon = feature.parts;
+        out.values.reserve(fields.size());
         for (const geo::Field& field : fields) {
             const auto found = feature.attributes.find(field.name);
             const geo::Attribute value = found == feature.attributes.end() ? geo::Attribute() : found->second;
