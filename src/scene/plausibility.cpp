@@ -31,14 +31,16 @@ struct Relief {
 Relief relief_of(const Grid<float>& elevation, const ReachableGround& reachable) {
     Relief relief;
     const GridGeometry& g = elevation.geometry;
-    const auto stride = static_cast<int>(std::ceil(std::sqrt(static_cast<double>(g.size()) / max_samples)));
+    const double cells = reachable.cells().value_or(static_cast<double>(g.size()));
+    const int stride = std::max(1, static_cast<int>(std::ceil(std::sqrt(cells / max_samples))));
     for (int r = 1; r + 1 < g.rows; r += stride) {
         for (int c = 1; c + 1 < g.columns; c += stride) {
+            if (!reachable.holds(c, r)) continue;
             const double here = elevation.at(c, r);
             const double west = elevation.at(c - 1, r), east = elevation.at(c + 1, r);
             const double south = elevation.at(c, r - 1), north = elevation.at(c, r + 1);
             const double around = (west + east + south + north) / 4;
-            if (std::isnan(around + here) || !reachable.holds(c, r)) continue;
+            if (std::isnan(around + here)) continue;
             relief.slopes.push_back(std::hypot(east - west, north - south) / (2 * g.cell));
             relief.roughness.push_back(std::abs(here - around) / g.cell);
             relief.lowest = std::min(relief.lowest, here);

@@ -122,6 +122,12 @@ bool ReachableGround::holds(int column, int row) const {
     return blocks.values.empty() || blocks.at(column / block, row / block) != 0;
 }
 
+std::optional<double> ReachableGround::cells() const {
+    if (blocks.values.empty()) return std::nullopt;
+    const auto reached = std::count(blocks.values.begin(), blocks.values.end(), std::uint8_t{1});
+    return static_cast<double>(reached) * block * block;
+}
+
 ReachableGround reachable_ground(const terrain::Terrain& terrain, const std::vector<terrain::Release>& releases,
                                  double travel_angle) {
     constexpr double most_blocks = 250'000;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "core/geometry.hpp"
@@ -25,6 +26,8 @@ struct ReachableGround {
     Grid<std::uint8_t> blocks;  ///< 1: reached; empty: all of the ground
 
     [[nodiscard]] bool holds(int column, int row) const;
+    /// How many cells; nothing: all of them.
+    [[nodiscard]] std::optional<double> cells() const;
 };
 
 /// By energy lines of that angle over the lowest ground of each block: too much rather than too little. Without a
