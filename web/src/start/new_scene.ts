@@ -206,7 +206,7 @@ export class NewScene {
   private showChecked(found: Checked): void {
     this.create.disabled = false;
     this.said.replaceChildren(h("div", { class: "card new-good" }, h("b", {}, "Ready to run"), h("pre", {}, found.summary),
-      found.notes.length === 0 ? null : h("ul", {}, ...found.notes.map((note) => h("li", {}, note)))));
+      found.notes.length === 0 ? null : h("ul", {}, ...found.notes.map((note) => h("li", {}, note.startsWith("WARNING: ") ? h("b", {}, note) : note)))));
   }
   private async finish(): Promise<void> {
     this.create.disabled = true;
