@@ -6,11 +6,14 @@
 #include <cstdlib>
 #include <filesystem>
 #include <string>
+#include <string_view>
 #include <system_error>
+#include <unistd.h>
 
 #include <fmt/format.h>
 
 #include "core/visible_text.hpp"
+#include "scene/warning.hpp"
 #include "sim/backend_choice.hpp"
 
 namespace talus::cli {
@@ -29,6 +32,22 @@ void note(const std::string& message) {
 bool print(const std::string& text) {
     if (std::fputs(visible(text).c_str(), stdout) >= 0 && std::fflush(stdout) == 0) return true;
     return errno == EPIPE;
+}
+
+bool print_notes(const std::vector<std::string>& notes) {
+    const char* const terminal = std::getenv("TERM");
+    const bool colours = isatty(STDOUT_FILENO) == 1 && terminal != nullptr && std::string_view(terminal) != "dumb" &&
+                         std::getenv("NO_COLOR") == nullptr;
+    for (const std::string& note : notes) {
+        if (!scene::warning_in(note)) {
+            if (!print("note: " + note + "\n")) return false;
+        } else if (!colours) {
+            if (!print(note + "\n")) return false;
+        } else if (std::fputs(("\033[1;31m" + visible(note) + "\033[0m\n").c_str(), stdout) < 0) {
+            return errno == EPIPE;
+        }
+    }
+    return true;
 }
 
 int print_result(const std::string& text, int code) {

@@ -56,6 +56,8 @@ void note(const std::string& message);
 /// Prints on stdout at once, with escapes for what a reader cannot see. False on a full disk, where the text is lost. A
 /// reader that has gone, such as `head`, has read what it wanted: that is no failure.
 bool print(const std::string& text);
+/// Prints the notes of a scene on stdout; warnings among them stand out on a terminal.
+bool print_notes(const std::vector<std::string>& notes);
 /// Prints a result and returns `code`, or that of a failure if it is lost: a script must be able to tell.
 int print_result(const std::string& text, int code = exit_code::success);
 

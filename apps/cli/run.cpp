@@ -153,7 +153,7 @@ class RunCallbacks {
     void report(const run::Progress& now) {
         // Notes are printed only now: an invalid input is refused with a single line.
         if (!std::exchange(notes_said_, true)) {
-            for (const std::string& note : job_.input.scene.notes) (void)print(fmt::format("note: {}\n", note));
+            (void)print_notes(job_.input.scene.notes);
         }
         job_.plan.report_base(progress_, now);
     }

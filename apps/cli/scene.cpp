@@ -60,9 +60,9 @@ int check_command(const CheckArguments& arguments) {
 int new_command(const scene::NewSceneOptions& options) {
     const auto created = write_new_scene(options);
     if (!created) return fail(exit_code::bad_input, created.error().message);
-    std::string text = fmt::format("wrote {}\n", created->file.string());
-    for (const std::string& note : created->notes) text += fmt::format("note: {}\n", note);
-    return print_result(text + fmt::format("run it: talus run {}\n", created->file.string()));
+    const bool told = print(fmt::format("wrote {}\n", created->file.string())) && print_notes(created->notes);
+    const int code = print_result(fmt::format("run it: talus run {}\n", created->file.string()));
+    return told ? code : exit_code::failure;
 }
 
 int export_builtin_command(const ExportArguments& arguments) {
@@ -91,7 +91,8 @@ void add_scene(CLI::App& program, std::vector<Command>& commands) {
     add_data_folder(*check_app, check->data);
     commands.push_back({check_app, [check] { return check_command(*check); }});
 
-    CLI::App* new_app = app->add_subcommand("new", "write a commented scene for your own terrain");
+    CLI::App* new_app =
+        app->add_subcommand("new", "write a commented scene for your own terrain; files may be in a .zip or .gz");
     const auto create = std::make_shared<scene::NewSceneOptions>();
     new_app->add_option("--dem", create->dem, "terrain raster in a projected metric CRS, or in local metres")
         ->required()
@@ -102,14 +103,43 @@ void add_scene(CLI::App& program, std::vector<Command>& commands) {
             "local: the terrain states no reference system and has metres of its own, as a flume")
         ->check(CLI::IsMember({"local"}))
         ->type_name("local");
-    new_app->add_option("--release", create->release, "polygons of the release area")->required()->type_name("FILE");
-    new_app->add_option("--buildings", create->buildings, "polygons of the buildings")->type_name("FILE");
+    new_app->add_option("--dem-layer", create->dem_layer, "which raster of a file with several")->type_name("NAME");
+    new_app
+        ->add_option("--release", create->release,
+                     "polygons of the release area, or closed lines; FILE|layername=NAME names a layer")
+        ->required()
+        ->type_name("FILE");
+    new_app->add_option("--release-layer", create->release_layer, "layer of the release's file")->type_name("NAME");
+    new_app
+        ->add_option("--release-feature", create->release_feature,
+                     "only the feature with this number (fid), or those with this value of an attribute")
+        ->type_name("N|ATTRIBUTE=VALUE");
+    new_app->add_option("--buildings", create->buildings, "polygons of the buildings; FILE|layername=NAME too")
+        ->type_name("FILE");
     CLI::Option* thickness =
-        new_app->add_option("--thickness-m", create->thickness, "thickness of the release normal to the slope, m")
+        new_app
+            ->add_option(
+                "--thickness-m", create->thickness,
+                "thickness of the release normal to the slope, m; not needed if its polygons have an attribute "
+                "thickness_m or thickness")
             ->type_name("M");
     new_app->add_option("--volume-m3", create->volume, "volume of the release instead, m3")
         ->type_name("M3")
         ->excludes(thickness);
+    new_app
+        ->add_option_function<std::vector<double>>(
+            "--extent",
+            [create](const std::vector<double>& e) {
+                create->extent = Extent{e[0], e[1], e[2], e[3]};
+            },
+            "part of the terrain to use, in its coordinates; otherwise all that debris could reach")
+        ->expected(4)
+        ->type_name("XMIN YMIN XMAX YMAX");
+    new_app
+        ->add_option("--cell", create->cell,
+                     "size of the terrain's cells, m: a whole multiple of the raster's, whose means are written to the "
+                     "folder")
+        ->type_name("M");
     new_app->add_option("-o,--output", create->folder, "folder to make for the scene")->required()->type_name("DIR");
     new_app
         ->add_option("--particles", create->target_particle_count,

@@ -15,6 +15,7 @@
 #include "report/results.hpp"
 #include "run/verdict.hpp"
 #include "run/words.hpp"
+#include "scene/warning.hpp"
 #include "sim/compression.hpp"
 #include "variant_plan.hpp"
 #include "zoom_text.hpp"
@@ -183,6 +184,7 @@ std::string summary_text(const scene::Scene& scene, const run::RunResult& result
         text += line("layers", layers_text(scene, seen.thickness, result.particle_spacing));
     }
     if (!result.depth_averaged()) text += line("compression", compression_text(seen.compression));
+    for (const std::string& warning : scene::warnings_in(scene.notes)) text += line("WARNING", warning);
     text += verdict_text(scene, judge(result, comparisons));
     for (const run::Comparison& comparison : comparisons) text += comparison_text(comparison, result);
     text += line("report", (output / "report.html").string());

@@ -242,7 +242,6 @@ Status ForeignReading::read_raster(GDALDataset& data) {
         const GDALDataType own = type_for(*band, !wanted_.picture && masked(*band));
         if (own == GDT_Unknown) return Error{file_ + ": holds complex numbers"};
         type = type == GDT_Unknown ? own : GDALDataTypeUnion(type, own);
-        if (!wanted_.picture) TALUS_TRY(check_coverage(file_, *band, 0, 0, raster.columns, raster.rows));
     }
     if (type == GDT_Unknown || GDALGetDataTypeSizeBytes(type) == 8) type = GDT_Float64;
     const bool add_alpha = wanted_.picture && palette == nullptr && any_mask && !has_alpha && type == GDT_Byte;

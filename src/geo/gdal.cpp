@@ -9,7 +9,9 @@
 #include <cpl_error.h>
 #include <fmt/format.h>
 
+#include "core/try.hpp"
 #include "core/utf8.hpp"
+#include "geo/file_name.hpp"
 
 namespace talus::geo {
 
@@ -33,6 +35,7 @@ void prepare_gdal() {
     std::call_once(once, [] {
         // GdalMessages works per thread; this covers messages from GDAL's own threads.
         CPLSetErrorHandler(CPLQuietErrorHandler);
+        CPLSetConfigOption("CPL_VSIL_GZIP_WRITE_PROPERTIES", "NO");  // no file beside an input
         GDALAllRegister();
     });
 }
@@ -74,13 +77,67 @@ GDALDatasetUniquePtr open_as_identified(const std::string& file, unsigned flags)
                                                   found != nullptr ? driver : nullptr));
 }
 
-Result<GDALDatasetUniquePtr> open_dataset(const std::string& file, unsigned flags, const std::string& kind) {
-    GdalMessages messages;
-    if (file.empty()) return Error{fmt::format("no file name given for a {}", kind)};
+std::vector<Subdataset> subdatasets(GDALDataset& data) {
+    std::vector<Subdataset> found;
+    for (char** item = data.GetMetadata("SUBDATASETS"); item != nullptr && *item != nullptr; ++item) {
+        const std::string entry = *item;
+        const auto equals = entry.find("_NAME=");
+        if (equals == std::string::npos) continue;
+        Subdataset one{entry.substr(equals + 6), ""};
+        one.layer = one.name.substr(one.name.rfind(':') + 1);
+        while (one.layer.starts_with('/')) one.layer.erase(0, 1);  // paths in HDF5
+        found.push_back(std::move(one));
+    }
+    return found;
+}
 
+namespace {
+
+/// The raster of a container that `layer` names; one that is alone may be named too.
+Result<GDALDatasetUniquePtr> open_raster_layer(const LayerOfFile& named, const std::string& gdal_name,
+                                               GDALDatasetUniquePtr data) {
+    std::string names;
+    for (const Subdataset& one : subdatasets(*data)) {
+        if (one.layer == named.layer) {
+            if (GDALDatasetUniquePtr chosen = open_as_identified(one.name, GDAL_OF_RASTER)) {
+                return Result<GDALDatasetUniquePtr>(std::move(chosen));
+            }
+            return Error{fmt::format("{}: the raster \"{}\" in it cannot be read", named.file, named.layer)};
+        }
+        names += (names.empty() ? "" : ", ") + one.layer;
+    }
+    if (!names.empty()) {
+        return Error{fmt::format("{}: has no raster \"{}\"; its rasters: {}", named.file, named.layer, names)};
+    }
+    std::string own = std::filesystem::path(named.file).stem().string();
+    const std::string driver = data->GetDriver() != nullptr ? data->GetDriver()->GetDescription() : "";
+    if (driver == "GPKG") {
+        GDALDatasetUniquePtr chosen = open_as_identified("GPKG:" + gdal_name + ":" + named.layer, GDAL_OF_RASTER);
+        if (chosen) return Result<GDALDatasetUniquePtr>(std::move(chosen));
+        if (const char* table = data->GetMetadataItem("IDENTIFIER")) own = table;
+    } else if (GDALRasterBand* band = data->GetRasterCount() > 0 ? data->GetRasterBand(1) : nullptr) {
+        if (const char* variable = band->GetMetadataItem("NETCDF_VARNAME")) own = variable;
+    }
+    if (own == named.layer) return Result<GDALDatasetUniquePtr>(std::move(data));
+    return Error{fmt::format("{}: has no raster \"{}\"; it holds one, \"{}\"", named.file, named.layer, own)};
+}
+
+}  // namespace
+
+Result<GDALDatasetUniquePtr> open_dataset(const std::string& name, unsigned flags, const std::string& kind) {
+    GdalMessages messages;
+    if (name.empty()) return Error{fmt::format("no file name given for a {}", kind)};
+
+    TALUS_ASSIGN(const LayerOfFile named, split_layer(name));
+    const std::string& file = named.file;
+    TALUS_ASSIGN(const std::string gdal_name, name_for_gdal(file, flags, kind));
+    messages.clear();
     // GDAL also accepts names that are not paths, such as NETCDF:"file.nc":band or /vsizip/...; only a name that GDAL
     // cannot open is examined as a path, to explain the failure.
-    GDALDatasetUniquePtr data = open_as_identified(file, flags);
+    GDALDatasetUniquePtr data = open_as_identified(gdal_name, flags);
+    if (data && !named.layer.empty() && (flags & GDAL_OF_RASTER) != 0) {
+        return open_raster_layer(named, gdal_name, std::move(data));
+    }
     if (data) return Result<GDALDatasetUniquePtr>(std::move(data));
 
     std::error_code failed;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include <gdal_priv.h>
 
@@ -37,9 +38,17 @@ class GdalMessages {
 /// what the first one refuses, and a text can look like several formats. Null: cannot be opened.
 [[nodiscard]] GDALDatasetUniquePtr open_as_identified(const std::string& file, unsigned flags);
 
-/// Opens a data set for reading. `flags`: GDAL_OF_RASTER or GDAL_OF_VECTOR; `kind`: "raster", for the messages.
-/// Errors: missing, no permission, a folder, empty, not recognised.
-[[nodiscard]] Result<GDALDatasetUniquePtr> open_dataset(const std::string& file, unsigned flags,
+/// A raster of a container of several.
+struct Subdataset {
+    std::string name;   ///< by which GDAL opens it
+    std::string layer;  ///< that of it alone, the end of the name
+};
+[[nodiscard]] std::vector<Subdataset> subdatasets(GDALDataset& data);
+
+/// Opens a data set for reading, from archives too, and with FILE|layername=NAME that raster of a container
+/// (file_name.hpp). `flags`: GDAL_OF_RASTER or GDAL_OF_VECTOR; `kind`: "raster", for the messages. Errors: missing, no
+/// permission, a folder, empty, not recognised, no such raster.
+[[nodiscard]] Result<GDALDatasetUniquePtr> open_dataset(const std::string& name, unsigned flags,
                                                         const std::string& kind);
 
 /// The file name for a shell, quoted where necessary.

@@ -9,6 +9,7 @@
 #include "geo/raster.hpp"
 #include "geo/raster_source.hpp"
 #include "geo/spatial_reference.hpp"
+#include "geo/terrain_frame.hpp"
 
 namespace talus::geo {
 
@@ -22,7 +23,9 @@ struct Window {
     int column = 0, row = 0, columns = 0, rows = 0;
 };
 
-Result<Window> window_of(const std::string& file, const RasterSource& source, const std::optional<Extent>& extent) {
+/// `factor`: cells of the raster along an edge of one that is kept.
+Result<Window> window_of(const std::string& file, const RasterSource& source, const std::optional<Extent>& extent,
+                         int factor) {
     Window window{0, 0, source.columns, source.rows};
     if (extent) {
         // A cell that the extent only touches by rounding is not wanted.
@@ -49,9 +52,27 @@ Result<Window> window_of(const std::string& file, const RasterSource& source, co
         window = {static_cast<int>(west), static_cast<int>(south), static_cast<int>(east - west),
                   static_cast<int>(north - south)};
     }
-    if (static_cast<double>(window.columns) * window.rows > most_cells) {
-        return Error{fmt::format("{}: {} x {} cells are to be read, at most {:.0f} million can be; set an extent", file,
-                                 window.columns, window.rows, most_cells / 1e6)};
+    if (factor > 1) {
+        const auto whole = [&](int& first, int& count, int all) {
+            const int last = std::min(first + count + factor - 1, all) / factor;
+            first /= factor;
+            count = (last - first) * factor;
+            first *= factor;
+        };
+        whole(window.column, window.columns, source.columns);
+        whole(window.row, window.rows, source.rows);
+        if (window.columns < 2 * factor || window.rows < 2 * factor) {
+            return Error{fmt::format("{}: fewer than 2 x 2 cells of {:.6g} m lie in it; choose smaller ones", file,
+                                     source.cell * factor)};
+        }
+    }
+    const int columns = window.columns / factor, rows = window.rows / factor;
+    if (static_cast<double>(columns) * rows > most_cells) {
+        return Error{
+            fmt::format("{}: {} x {} cells are to be read, at most {:.0f} million can be; name the part that "
+                        "matters (terrain.extent_m in a scene; --extent, or --cell for larger cells, of talus "
+                        "scene new)",
+                        file, columns, rows, most_cells / 1e6)};
     }
     return window;
 }
@@ -83,14 +104,14 @@ struct StoredRange {
     }
 };
 
+/// Calls `put(column, row, elevation)` for every cell of the window that holds data, counted from its south-west.
+template <class Put>
 Result<StoredRange> read_window(const std::string& file, const RasterSource& source, const Window& window,
-                                Grid<float>& grid) {
+                                const Put& put) {
     GdalMessages messages;
     GDALRasterBand& band = *source.band;
     const int first_column = source.first_column_west ? window.column : source.columns - window.column - window.columns;
     const int first_line = source.first_row_north ? source.rows - window.row - window.rows : window.row;
-
-    TALUS_TRY(check_coverage(file, band, first_column, first_line, window.columns, window.rows));
 
     GDALRasterBand* mask = (band.GetMaskFlags() & GMF_ALL_VALID) != 0 ? nullptr : band.GetMaskBand();
     int block_width = 1, block_height = 1;
@@ -118,7 +139,7 @@ Result<StoredRange> read_window(const std::string& file, const RasterSource& sou
                 if ((mask != nullptr && valid[i] == 0) || !std::isfinite(stored[i])) continue;
                 range.add(stored[i]);
                 const int column = source.first_column_west ? c : window.columns - 1 - c;
-                grid.at(column, row) = static_cast<float>(stored[i] * source.scale + source.offset);
+                put(column, row, stored[i] * source.scale + source.offset);
             }
         }
     }
@@ -154,9 +175,26 @@ Status check_elevations(const std::string& file, const RasterSource& source, con
 
 enum class Kind { elevations, values, map };
 
+/// Puts the means of `factor` x `factor` cells into the grid, NaN where fewer than half of them hold data.
+Result<StoredRange> read_means(const std::string& file, const RasterSource& source, const Window& window, int factor,
+                               Grid<float>& grid) {
+    Grid<double> sum(grid.geometry, 0);
+    Grid<int> count(grid.geometry, 0);
+    TALUS_ASSIGN(auto range, read_window(file, source, window, [&](int column, int row, double value) {
+                     const std::size_t k = grid.geometry.index(column / factor, row / factor);
+                     sum.values[k] += value;
+                     ++count.values[k];
+                 }));
+    for (std::size_t k = 0; k < grid.values.size(); ++k) {
+        const int cells = count.values[k];
+        if (2 * cells >= factor * factor) grid.values[k] = static_cast<float>(sum.values[k] / cells);
+    }
+    return range;
+}
+
 Result<Raster> read_cells(const std::string& file, const RasterSource& source, const std::optional<Extent>& extent,
-                          Kind kind) {
-    TALUS_ASSIGN(auto window, window_of(file, source, extent));
+                          Kind kind, int factor = 1) {
+    TALUS_ASSIGN(auto window, window_of(file, source, extent, factor));
     Raster raster;
     raster.crs = source.crs;
     raster.crs_assumed = source.crs_assumed;
@@ -164,11 +202,15 @@ Result<Raster> read_cells(const std::string& file, const RasterSource& source, c
     raster.nodata_value = source.nodata;
     raster.grid = Grid<float>({.x_min = source.x_min + window.column * source.cell,
                                .y_min = source.y_min + window.row * source.cell,
-                               .cell = source.cell,
-                               .columns = window.columns,
-                               .rows = window.rows},
+                               .cell = source.cell * factor,
+                               .columns = window.columns / factor,
+                               .rows = window.rows / factor},
                               std::numeric_limits<float>::quiet_NaN());
-    TALUS_ASSIGN(auto range, read_window(file, source, window, raster.grid));
+    const auto keep = [&](int column, int row, double value) {
+        raster.grid.at(column, row) = static_cast<float>(value);
+    };
+    TALUS_ASSIGN(auto range, factor > 1 ? read_means(file, source, window, factor, raster.grid)
+                                        : read_window(file, source, window, keep));
     if (range.valid == 0 && kind != Kind::map) {
         return Error{fmt::format("{}: {} no cell holds data, all {} x {} are nodata", file,
                                  extent ? "within the extent" : "in the whole raster", window.columns, window.rows)};
@@ -176,7 +218,8 @@ Result<Raster> read_cells(const std::string& file, const RasterSource& source, c
     if (kind == Kind::elevations) {
         TALUS_TRY(check_elevations(file, source, range));
     }
-    raster.nodata_share = 1 - static_cast<double>(range.valid) / static_cast<double>(raster.grid.values.size());
+    const double cells = static_cast<double>(window.columns) * window.rows;
+    raster.nodata_share = 1 - static_cast<double>(range.valid) / cells;
     return Result<Raster>(std::move(raster));
 }
 
@@ -209,6 +252,11 @@ Result<Raster> read_terrain_raster(const std::string& file, int band, const std:
                         file, source.crs.label())};
     }
     return read_cells(file, source, extent, Kind::elevations);
+}
+
+Result<Raster> read_coarse_terrain(const std::string& file, int band, const std::optional<Extent>& extent, int factor) {
+    TALUS_ASSIGN(auto source, open_raster(file, band));
+    return read_cells(file, source, extent, Kind::elevations, factor);
 }
 
 Result<Raster> read_value_raster(const std::string& file, const Crs& terrain_crs) {

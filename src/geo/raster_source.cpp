@@ -182,13 +182,9 @@ Result<std::string> value_unit_of(const std::string& file, int band_number, GDAL
 
 Error no_bands(const std::string& file, GDALDataset& data) {
     std::string names;
-    for (char** item = data.GetMetadata("SUBDATASETS"); item != nullptr && *item != nullptr; ++item) {
-        const std::string entry = *item;
-        const auto equals = entry.find("_NAME=");
-        if (equals != std::string::npos) names += (names.empty() ? "" : ", ") + entry.substr(equals + 6);
-    }
+    for (const Subdataset& one : subdatasets(data)) names += (names.empty() ? "" : ", ") + one.layer;
     if (names.empty()) return {fmt::format("{}: holds no raster band", file)};
-    return {fmt::format("{}: holds several rasters; name one of them as the file: {}", file, names)};
+    return {fmt::format("{}: holds several rasters; name one of them as {}|layername=NAME: {}", file, file, names)};
 }
 
 }  // namespace
@@ -206,7 +202,8 @@ Status check_raw_size(const std::string& file, GDALDataset& data) {
     constexpr std::array raw_drivers = {"ENVI", "EHdr", "GenBin", "ISCE", "ROI_PAC", "RRASTER"};
     if (std::find(raw_drivers.begin(), raw_drivers.end(), driver) == raw_drivers.end()) return {};
     VSIStatBufL stat;
-    if (VSIStatL(file.c_str(), &stat) != 0) return {};
+    // Of the file that GDAL opened: `file` can be an archive.
+    if (VSIStatL(data.GetDescription(), &stat) != 0) return {};
     double expected = 0;
     for (int b = 1; b <= data.GetRasterCount(); ++b) {
         expected += static_cast<double>(data.GetRasterXSize()) * data.GetRasterYSize() *
@@ -215,16 +212,6 @@ Status check_raw_size(const std::string& file, GDALDataset& data) {
     if (static_cast<double>(stat.st_size) >= expected) return {};
     return Error{fmt::format("{}: the file is damaged or cut short: {:.0f} bytes of cells expected, {} there", file,
                              expected, stat.st_size)};
-}
-
-Status check_coverage(const std::string& file, GDALRasterBand& band, int column, int line, int columns, int lines) {
-    int given = 0;
-    (void)band.GetNoDataValue(&given);
-    if (given != 0) return {};
-    const int coverage = band.GetDataCoverageStatus(column, line, columns, lines, 0, nullptr);
-    if ((coverage & GDAL_DATA_COVERAGE_STATUS_EMPTY) == 0) return {};
-    return Error{fmt::format(
-        "{}: parts of the raster were never written (an interrupted copy?) and no nodata value is declared", file)};
 }
 
 std::string declare_nodata_command(const std::string& file, const std::string& driver, double value) {

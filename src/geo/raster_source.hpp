@@ -36,11 +36,6 @@ struct RasterSource {
 /// GDAL reads zeros where a raw file ends too early; detected by its size.
 [[nodiscard]] Status check_raw_size(const std::string& file, GDALDataset& data);
 
-/// GDAL reads a block that was never written as zeros: an interrupted copy would become a plain at sea level. Lines are
-/// counted as in the file.
-[[nodiscard]] Status check_coverage(const std::string& file, GDALRasterBand& band, int column, int line, int columns,
-                                    int lines);
-
 /// The command that declares `value` as the nodata value of a file, given the name of its driver.
 [[nodiscard]] std::string declare_nodata_command(const std::string& file, const std::string& driver, double value);
 

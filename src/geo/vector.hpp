@@ -1,5 +1,7 @@
 #pragma once
 
+#include <cstddef>
+#include <cstdint>
 #include <map>
 #include <string>
 #include <variant>
@@ -15,6 +17,7 @@ using Attribute = std::variant<std::monostate, double, std::string>;  ///< monos
 
 /// A polygon or multi-polygon in the terrain's CRS.
 struct PolygonFeature {
+    std::int64_t fid = 0;  ///< the number that GIS programs show
     std::vector<Polygon> parts;
     std::map<std::string, Attribute> attributes;
 };
@@ -23,6 +26,7 @@ struct PolygonLayer {
     std::vector<PolygonFeature> features;
     /// "reprojected from EPSG:4326 (WGS 84) to EPSG:2326 (...)", "taken to be in ..."; empty: same CRS
     std::string reprojection;
+    std::size_t closed_lines = 0;   ///< features that are closed lines, taken as polygons
     bool encoding_assumed = false;  ///< some text was not UTF-8 and was read as Windows-1252
 };
 
@@ -42,10 +46,11 @@ struct SingleLine {
     std::string reprojection;
 };
 
-/// Reads polygons from GeoJSON, GeoPackage, Shapefile or any other OGR source; `layer` empty: the only layer. Vectors
-/// are reprojected to `terrain_crs`, with a note; where that is local, a layer with a local system, with none or with
-/// one that says nothing (GeoJSON without crs) is taken to be in it. All text is UTF-8. Errors: missing file, a folder
-/// that is no data source, no such layer or several without a name, empty layer, other geometry, missing CRS,
+/// Reads polygons from GeoJSON, GeoPackage, Shapefile or any other OGR source; `layer` empty: that which the name of
+/// the file says (FILE|layername=NAME), or else the only one. Vectors are reprojected to `terrain_crs`, with a note;
+/// where that is local, a layer with a local system, with none or with one that says nothing (GeoJSON without crs) is
+/// taken to be in it. Closed lines count as polygons; all text is UTF-8. Errors: missing file, a folder that is no data
+/// source, no such layer or several without a name, empty layer, other geometry, an open line, missing CRS,
 /// self-intersecting polygon (names the feature and the place).
 [[nodiscard]] Result<PolygonLayer> read_polygons(const std::string& file, const std::string& layer,
                                                  const Crs& terrain_crs);

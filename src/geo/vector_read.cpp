@@ -10,6 +10,8 @@
 #include "core/lower_case.hpp"
 #include "core/try.hpp"
 #include "core/utf8.hpp"
+#include "geo/closed_line.hpp"
+#include "geo/file_name.hpp"
 #include "geo/gdal.hpp"
 #include "geo/spatial_reference.hpp"
 #include "geo/vector.hpp"
@@ -47,8 +49,10 @@ Result<OGRLayer*> find_layer(const std::string& file, const std::string& name, G
         return layer;
     }
     if (count > 1) {
-        return Error{
-            fmt::format("{}: has {} layers, say which one with layer = \"...\": {}", file, count, layer_names(data))};
+        return Error{fmt::format(
+            "{}: has {} layers; name one of them with layer = \"...\" in the scene, or as {}|layername=NAME: "
+            "{}",
+            file, count, file, layer_names(data))};
     }
     return data.GetLayer(0);
 }
@@ -113,11 +117,16 @@ Status take_as_local(const std::string& file, const Crs& terrain_crs, Source& so
     return {};
 }
 
-Result<Source> open_layer(const std::string& file, const std::string& layer, const Crs& terrain_crs) {
+Result<Source> open_layer(const std::string& name, const std::string& layer, const Crs& terrain_crs) {
+    TALUS_ASSIGN(const LayerOfFile named, split_layer(name));
+    const std::string& file = named.file;
+    if (!layer.empty() && !named.layer.empty() && layer != named.layer) {
+        return Error{fmt::format("{}: names the layer \"{}\", and layer = \"{}\" another", name, named.layer, layer)};
+    }
     Source source;
     TALUS_ASSIGN(source.data, open_dataset(file, GDAL_OF_VECTOR, "vector file"));
     GdalMessages messages;
-    TALUS_ASSIGN(source.layer, find_layer(file, layer, *source.data));
+    TALUS_ASSIGN(source.layer, find_layer(file, layer.empty() ? named.layer : layer, *source.data));
 
     source.feature_count = source.layer->GetFeatureCount(TRUE);
     if (messages.has_failure()) {
@@ -297,6 +306,22 @@ Error wrong_geometry(const std::string& file, const ReadFeature& read, const std
                         OGRGeometryTypeToName(wkbFlatten(read.feature->GetGeometryRef()->getGeometryType())), wanted)};
 }
 
+/// Puts the polygon in place of a closed line. Errors: an open one.
+Status take_closed_line(const std::string& file, const Source& source, ReadFeature& read, std::size_t& closed_lines) {
+    const bool degrees = source.layer->GetSpatialRef()->IsGeographic() != 0;
+    ClosedLine closed = close_line(*read.geometry, degrees ? 1e-8 : 1e-3);
+    if (!closed.is_line) return {};
+    if (!closed.polygon) {
+        return Error{
+            fmt::format("{}: {} is an open line, a polygon is needed; end it where it begins, or make a polygon "
+                        "of it (in QGIS: Vector, Geometry Tools, Lines to Polygons)",
+                        file, read.label)};
+    }
+    read.geometry = std::move(closed.polygon);
+    ++closed_lines;
+    return {};
+}
+
 /// Transforms a geometry to the terrain's CRS.
 Status transform(const std::string& file, const Source& source, ReadFeature& read) {
     if (!source.transformation) return {};
@@ -353,8 +378,10 @@ Result<PolygonLayer> read_polygons(const std::string& file, const std::string& l
     for (GIntBig number = 1;; ++number) {
         TALUS_ASSIGN(auto read, next_feature(file, source, number));
         if (!read.feature) break;
+        TALUS_TRY(take_closed_line(file, source, read, result.closed_lines));
         read.geometry->closeRings();
         PolygonFeature feature;
+        feature.fid = read.feature->GetFID();
         if (!collect_polygons(*read.geometry, feature.parts) || feature.parts.empty()) {
             return wrong_geometry(file, read, "a polygon");
         }

@@ -10,6 +10,7 @@
 #include <cpl_string.h>
 #include <fmt/format.h>
 
+#include "core/lower_case.hpp"
 #include "core/try.hpp"
 #include "geo/gdal.hpp"
 
@@ -159,13 +160,20 @@ Status write_zip(const fs::path& archive, const std::vector<ZipEntry>& entries) 
     return Error{archive.string() + ": " + written.error().message};
 }
 
+bool names_no_others(const std::string& format) {
+    return std::find(plain_formats.begin(), plain_formats.end(), format) != plain_formats.end();
+}
+
 Result<std::vector<fs::path>> files_of(const fs::path& file) {
     prepare_gdal();
+    if (const std::string ending = lower_case(file.extension().string()); ending == ".zip" || ending == ".gz") {
+        return Error{file.string() + ": an archive is not packed into another; unpack it"};
+    }
     const GdalMessages messages;
     GDALDriverH driver = GDALIdentifyDriverEx(file.c_str(), GDAL_OF_RASTER | GDAL_OF_VECTOR, nullptr, nullptr);
     if (driver == nullptr) return std::vector<fs::path>{file};  // not GDAL's: a mesh
     const std::string format = GDALGetDriverShortName(driver);
-    if (std::find(plain_formats.begin(), plain_formats.end(), format) == plain_formats.end()) {
+    if (!names_no_others(format)) {
         return Error{fmt::format(
             "{}: a file of the format {} may name other files and is not packed; save it as GeoTIFF or GeoPackage",
             file.string(), format)};

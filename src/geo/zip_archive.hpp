@@ -31,6 +31,10 @@ struct ZipEntry {
 /// Errors: a file cannot be read, the archive cannot be written; then none remains.
 [[nodiscard]] Status write_zip(const std::filesystem::path& archive, const std::vector<ZipEntry>& entries);
 
+/// Whether files of a format (the name of GDAL's driver) are complete by themselves: none leads elsewhere, as a virtual
+/// raster can.
+[[nodiscard]] bool names_no_others(const std::string& format);
+
 /// The file and those beside it that belong to it: the parts of a Shapefile, world files, metadata. Errors: a format
 /// that may name files elsewhere or the network, such as a virtual raster.
 [[nodiscard]] Result<std::vector<std::filesystem::path>> files_of(const std::filesystem::path& file);

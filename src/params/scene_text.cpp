@@ -60,27 +60,6 @@ std::string default_text(const Section& section, const Parameter& parameter) {
     return std::holds_alternative<double>(value) ? plain_text(value) : toml_text(value);
 }
 
-/// An example for the right of "=" where there is no default to show.
-std::string example_value(const Parameter& parameter) {
-    switch (parameter.kind) {
-        case ParameterKind::boolean:
-            return "false";
-        case ParameterKind::text:
-        case ParameterKind::path:
-        case ParameterKind::choice:
-            return parameter.required ? "\"...\"" : "\"\"";
-        case ParameterKind::text_list:
-        case ParameterKind::points:
-            return "[]";
-        case ParameterKind::extent:
-            return "[0, 0, 1, 1]";
-        case ParameterKind::integer:
-        case ParameterKind::number:
-            break;
-    }
-    return parameter.range.contains(0) ? "0" : "1";
-}
-
 /// Lists of texts are written with one text per line.
 std::string assignment(const Parameter& parameter, const ParameterValue& value) {
     const auto* list = std::get_if<std::vector<std::string>>(&value);
@@ -100,8 +79,9 @@ std::string parameter_lines(const Section& section, const Parameter& parameter, 
     const std::string out = wrapped(about, "# ");
     const std::string written = toml_text(value);
     if (written != toml_text(default_here) && !written.empty()) return out + assignment(parameter, value);
+    // A value here would look like the default: whoever removes the # would change the scene.
     const std::string shown = toml_text(default_here);
-    return out + "# " + parameter.key + " = " + (shown.empty() ? example_value(parameter) : shown) + "\n";
+    return out + "# " + parameter.key + " = " + (shown.empty() ? "none" : shown) + "\n";
 }
 
 std::string markdown_cell(std::string text) {

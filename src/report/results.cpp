@@ -15,6 +15,7 @@
 #include "report/hazard_map.hpp"
 #include "report/number_text.hpp"
 #include "run/words.hpp"
+#include "scene/warning.hpp"
 #include "sim/compression.hpp"
 
 namespace talus::report {
@@ -381,6 +382,7 @@ Json run_results(const scene::Scene& scene, const run::RunResult& result,
                 {"assumptions", scene.spec.scene.assumptions},
                 {"not_set", not_set(scene, result)},
                 {"notes", scene.notes},
+                {"input_warnings", scene::warnings_in(scene.notes)},
                 {"sources", scene.spec.scene.sources},
                 {"as_computed", chosen_values(scene, result)},
                 {"parameters", parameters(scene)},

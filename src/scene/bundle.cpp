@@ -95,7 +95,7 @@ Result<Packed> write_bundle(const fs::path& scene_file, const fs::path& archive)
         const std::string key = key_path(section, index, parameter);
         if (!failed) return;
         if (const auto known = packed.find(path); known != packed.end()) {
-            edits.emplace_back(places.at(key), known->second);
+            edits.emplace_back(places.at(key), known->second + layer_behind(parsed, section, index, parameter));
             return;
         }
         const auto files = files_of(path, scene);
@@ -120,7 +120,7 @@ Result<Packed> write_bundle(const fs::path& scene_file, const fs::path& archive)
             done.bytes += fs::file_size((*files)[k], ignored);
         }
         packed[path] = folder + relative.front();
-        edits.emplace_back(places.at(key), packed[path]);
+        edits.emplace_back(places.at(key), packed[path] + layer_behind(parsed, section, index, parameter));
     });
     TALUS_TRY(std::move(failed));
     // From the end on, so that the places before stay.

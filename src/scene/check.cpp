@@ -10,6 +10,7 @@
 #include "core/decimals.hpp"
 #include "scene/grid_cell.hpp"
 #include "scene/particle_spacing.hpp"
+#include "scene/warning.hpp"
 #include "terrain/map_cell.hpp"
 
 namespace talus::scene {
@@ -92,7 +93,10 @@ std::string describe_scene(const Scene& scene) {
         out += fmt::format("variant     {}: {}\n", variant.name, fmt::join(variant.set, ", "));
     }
     if (!scene.notes.empty()) out += "notes\n";
-    for (const std::string& note : scene.notes) out += "  - " + note + "\n";
+    const auto is_warning = [](const std::string& note) { return warning_in(note).has_value(); };
+    std::vector<std::string> notes = scene.notes;
+    std::stable_partition(notes.begin(), notes.end(), is_warning);
+    for (const std::string& note : notes) out += "  - " + note + "\n";
     return out;
 }
 

@@ -1,9 +1,12 @@
 #include <cstdlib>
+#include <filesystem>
+#include <variant>
 
 #include <fmt/format.h>
 
 #include "core/input_file.hpp"
 #include "core/try.hpp"
+#include "geo/file_name.hpp"
 #include "scene/parse.hpp"
 
 namespace talus::scene {
@@ -27,11 +30,25 @@ Result<std::string> expand_environment(const std::string& text) {
     }
 }
 
-/// GDAL also opens names that are not paths, such as NETCDF:"file.nc":band.
-bool is_driver_name(const std::string& text) {
-    const std::size_t colon = text.find(':');
-    return colon != std::string::npos && colon >= 2 &&
-           text.find_first_not_of("ABCDEFGHIJKLMNOPQRSTUVWXYZ_0123456789") == colon;
+bool can_name_a_layer(const params::Section& section, const params::Parameter& parameter) {
+    return section.find("layer") != nullptr && (parameter.key == "file" || parameter.key == "polygon_file");
+}
+
+/// Takes the layer behind a vector file's name, as in "map.gpkg|layername=scar", into the key `layer` of its section.
+Result<std::string> take_layer(ParsedScene& scene, const params::Section& section, std::size_t index,
+                               const params::Parameter& parameter, const std::string& text) {
+    if (!can_name_a_layer(section, parameter) || text.find('|') == std::string::npos) return text;
+    const params::Parameter* layer = section.find("layer");
+    std::error_code failed;
+    if (std::filesystem::exists(scene.file.parent_path() / text, failed)) return text;
+    TALUS_ASSIGN(const geo::LayerOfFile named, geo::split_layer(text));
+    const params::ParameterValue value = layer->get(scene.spec, index);
+    const auto* given = std::get_if<std::string>(&value);
+    if (given != nullptr && !given->empty() && *given != named.layer) {
+        return Error{fmt::format("names the layer \"{}\", and layer = \"{}\" another", named.layer, *given)};
+    }
+    layer->set(scene.spec, index, named.layer);
+    return named.file;
 }
 
 Status resolve_paths(ParsedScene& scene) {
@@ -49,12 +66,13 @@ Status resolve_paths(ParsedScene& scene) {
                                              params::toml_text(value), expanded.error().message,
                                              tell ? "; to obtain the file: " + one_line(obtain, 4000) : "")};
                 }
-                const std::filesystem::path path = scene.file.parent_path() / *expanded;
+                const Result<std::string> file = take_layer(scene, section, index, parameter, *expanded);
+                if (!file) return Error{scene.at(key_path(section, index, parameter)) + ": " + file.error().message};
+                const std::filesystem::path path = scene.file.parent_path() / *file;
                 if (Status s = check_input_file(path); !s) {
                     return Error{scene.at(key_path(section, index, parameter)) + ": " + s.error().message};
                 }
-                parameter.set(scene.spec, index,
-                              is_driver_name(*expanded) ? *expanded : path.lexically_normal().string());
+                parameter.set(scene.spec, index, geo::is_gdal_name(*file) ? *file : path.lexically_normal().string());
             }
         }
     }
@@ -62,6 +80,16 @@ Status resolve_paths(ParsedScene& scene) {
 }
 
 }  // namespace
+
+std::string layer_behind(const ParsedScene& scene, const params::Section& section, std::size_t index,
+                         const params::Parameter& parameter) {
+    if (!can_name_a_layer(section, parameter)) return "";
+    const params::Parameter& layer = *section.find("layer");
+    if (scene.places.contains(key_path(section, index, layer))) return "";
+    const params::ParameterValue value = layer.get(scene.spec, index);
+    const auto* name = std::get_if<std::string>(&value);
+    return name == nullptr || name->empty() ? "" : "|layername=" + *name;
+}
 
 Status check_rules(const ParsedScene& scene, double particle_spacing) {
     for (const params::Section& section : params::scene_sections()) {

@@ -7,15 +7,19 @@
 
 #include <fmt/format.h>
 
+#include "core/angle.hpp"
 #include "core/coordinate_text.hpp"
 #include "core/hash.hpp"
 #include "core/try.hpp"
+#include "geo/file_name.hpp"
 #include "geo/orthophoto.hpp"
+#include "geo/terrain_frame.hpp"
 #include "scene/grid_cell.hpp"
 #include "scene/limits.hpp"
 #include "scene/output_defaults.hpp"
 #include "scene/particle_spacing.hpp"
 #include "scene/plausibility.hpp"
+#include "scene/suspect_ground.hpp"
 #include "scene/viscosity_limit.hpp"
 
 namespace talus::scene {
@@ -88,6 +92,18 @@ double total_volume(const Scene& scene) {
     return volume;
 }
 
+void note_terrain_file(const geo::TerrainFrame& frame, Scene& scene) {
+    if (frame.eight_bit) {
+        scene.notes.emplace_back(
+            "terrain: the file holds 8-bit numbers, of which there are 256: these are rarely elevations; if it is a "
+            "hillshade or another picture, use the raster of elevations that it was made from");
+    }
+    if (frame.holes_read_0) {
+        scene.notes.emplace_back(
+            "terrain: parts of the file were never written, and it declares no nodata value: these parts read as 0 m");
+    }
+}
+
 Status load_terrain(const ParsedScene& parsed, Scene& scene) {
     const params::TerrainSpec& spec = parsed.spec.terrain;
     Result<geo::Raster> raster =
@@ -101,6 +117,8 @@ Status load_terrain(const ParsedScene& parsed, Scene& scene) {
         return Error{message};
     }
     record_input("terrain", spec.file, scene);
+    TALUS_ASSIGN(const geo::TerrainFrame frame, geo::read_terrain_frame(spec.file, spec.band));
+    note_terrain_file(frame, scene);
     scene.crs = raster->crs;
     scene.vertical_unit = raster->vertical_unit;
     scene.nodata_share = raster->nodata_share;
@@ -129,7 +147,16 @@ Status load_terrain(const ParsedScene& parsed, Scene& scene) {
     return {};
 }
 
-void record_input(const std::string& role, const std::string& path, Scene& scene) {
+void note_changes(const std::string& label, const geo::PolygonLayer& layer, Scene& scene) {
+    if (!layer.reprojection.empty()) scene.notes.push_back(label + ": " + layer.reprojection);
+    if (layer.closed_lines == 0) return;
+    scene.notes.push_back(layer.closed_lines == 1
+                              ? label + ": a closed line is taken as a polygon"
+                              : fmt::format("{}: {} closed lines are taken as polygons", label, layer.closed_lines));
+}
+
+void record_input(const std::string& role, const std::string& name, Scene& scene) {
+    const std::string path = geo::file_on_disk(name);
     std::error_code code;
     if (!std::filesystem::is_regular_file(path, code)) return;  // a GDAL name such as /vsizip/...: nothing to hash
     hash_file(scene.inputs.emplace_back(InputFile{role, path, 0, ""}));
@@ -185,7 +212,10 @@ Result<Scene> assemble_scene(const ParsedScene& parsed) {
     TALUS_TRY(check_alerts(parsed, scene));
     TALUS_TRY(particles ? check_limits(parsed, scene) : check_depth_averaged(parsed, scene));
     settle_geoid_height(scene);
-    note_implausible_terrain(scene);
+    const ReachableGround reachable =
+        reachable_ground(scene.terrain, scene.releases, travel_angle_deg / degrees_per_radian);
+    TALUS_TRY(check_missing_data(parsed, reachable, scene));
+    note_implausible_terrain(reachable, scene);
     if (particles) {
         note_coarse_particles(scene);
         note_unused_by_particles(scene);

@@ -3,6 +3,8 @@
 #include <string>
 #include <vector>
 
+#include "geo/terrain_frame.hpp"
+#include "geo/vector.hpp"
 #include "scene/parse.hpp"
 #include "scene/scene.hpp"
 
@@ -53,6 +55,12 @@ namespace talus::scene {
 
 /// Checks that triggers and alarms name what exists. All of it is loaded.
 [[nodiscard]] Status check_alerts(const ParsedScene& parsed, const Scene& scene);
+
+/// Notes what its file says about a terrain beside its elevations.
+void note_terrain_file(const geo::TerrainFrame& frame, Scene& scene);
+
+/// Notes what was done to the polygons of a file: another reference system, closed lines. `label`: "zoom".
+void note_changes(const std::string& label, const geo::PolygonLayer& layer, Scene& scene);
 
 /// Adds the file, and for a Shapefile the files that belong to it, to scene.inputs.
 void record_input(const std::string& role, const std::string& path, Scene& scene);

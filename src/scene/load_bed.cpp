@@ -32,7 +32,7 @@ Status load_one(const ParsedScene& parsed, std::size_t index, Scene& scene) {
         const Result<geo::PolygonLayer> layer = read_polygons(spec.file, spec.layer, scene.crs);
         if (!layer) return refused("file", layer.error());
         record_input(label, spec.file, scene);
-        if (!layer->reprojection.empty()) scene.notes.push_back(label + ": " + layer->reprojection);
+        note_changes(label, *layer, scene);
         for (std::size_t feature = 0; feature < layer->features.size(); ++feature) {
             double depth = spec.depth.value_or(0);
             if (!spec.depth_attribute.empty()) {

@@ -12,6 +12,7 @@
 #include "scene/known_ground.hpp"
 #include "scene/load.hpp"
 #include "scene/polygons.hpp"
+#include "scene/warning.hpp"
 
 namespace talus::scene {
 namespace {
@@ -95,10 +96,10 @@ void leave_out_buildings_on_releases(Scene& scene) {
         for (const terrain::Release& release : scene.releases) {
             const double area = shared_area(release, building);
             if (area <= 0) continue;
-            scene.notes.push_back(
-                fmt::format("building \"{}\" stands on release \"{}\" with {:.3g} m2 and was left out: "
-                            "the ground under it fails",
-                            building.name, release.name, area));
+            scene.notes.push_back(as_warning(
+                fmt::format("building \"{}\" stands on release \"{}\" with {:.3g} m2 and was left out: the ground "
+                            "under it fails, and no damage to it is computed",
+                            building.name, release.name, area)));
             return true;
         }
         return false;
@@ -183,7 +184,7 @@ Status load_footprints(const ParsedScene& parsed, Scene& scene, std::size_t& out
     const Result<geo::PolygonLayer> layer = read_polygons(spec.file, spec.layer, scene.crs);
     if (!layer) return Error{parsed.at("buildings.file") + ": " + layer.error().message};
     record_input("buildings", spec.file, scene);
-    if (!layer->reprojection.empty()) scene.notes.push_back("buildings: " + layer->reprojection);
+    note_changes("buildings", *layer, scene);
     TALUS_TRY(check_attribute(parsed, "buildings.height_attribute", spec.height_attribute, *layer));
     TALUS_TRY(check_attribute(parsed, "buildings.name_attribute", spec.name_attribute, *layer));
     TALUS_TRY(check_attribute(parsed, "buildings.resistance_attribute", spec.resistance_attribute, *layer));

@@ -40,7 +40,7 @@ Status load_area(const params::InflowSpec& spec, const std::string& at, const st
         const Result<geo::PolygonLayer> layer = read_polygons(spec.polygon_file, spec.layer, scene.crs);
         if (!layer) return Error{at + ": " + layer.error().message};
         record_input(label, spec.polygon_file, scene);
-        if (!layer->reprojection.empty()) scene.notes.push_back(label + ": " + layer->reprojection);
+        note_changes(label, *layer, scene);
         for (const geo::PolygonFeature& feature : layer->features) {
             inflow.area.insert(inflow.area.end(), feature.parts.begin(), feature.parts.end());
         }

@@ -71,7 +71,7 @@ Status load_outlines(const ParsedScene& parsed, const std::vector<params::Outlin
         }
         const std::string label = fmt::format("{} {}", what, i + 1);
         record_input(label, specs[i].file, scene);
-        if (!layer->reprojection.empty()) scene.notes.push_back(label + ": " + layer->reprojection);
+        note_changes(label, *layer, scene);
         std::vector<Polygon>& outline = outlines.emplace_back();
         for (const geo::PolygonFeature& feature : layer->features) {
             outline.insert(outline.end(), feature.parts.begin(), feature.parts.end());

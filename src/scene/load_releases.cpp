@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <optional>
 
 #include <fmt/format.h>
@@ -137,16 +138,39 @@ Result<PlanPoint> shift(const params::ReleaseSpec& spec, const std::string& labe
     return by;
 }
 
+/// Volume of the raster's cells whose centres lie in no polygon, m3.
+double volume_outside(const terrain::Release& release) {
+    const Grid<float>& raster = *release.thickness_raster;
+    const GridGeometry& g = raster.geometry;
+    Grid<std::uint8_t> inside(g, 0);
+    for (const terrain::ReleasePatch& patch : release.patches) {
+        for_each_cell_inside(patch.polygon, g, [&](int column, int row) { inside.at(column, row) = 1; });
+    }
+    double sum = 0;
+    for (std::size_t k = 0; k < raster.values.size(); ++k) {
+        if (raster.values[k] > 0 && inside.values[k] == 0) sum += static_cast<double>(raster.values[k]);
+    }
+    return sum * g.cell * g.cell;
+}
+
 /// Notes the volume of the release next to that of its raster.
 void note_raster_volume(const std::string& label, const terrain::Release& release, Scene& scene) {
     const Grid<float>& raster = *release.thickness_raster;
     double sum = 0;
     for (const float thickness : raster.values) sum += thickness > 0 ? static_cast<double>(thickness) : 0;
-    scene.notes.push_back(fmt::format(
+    const double whole = sum * raster.geometry.cell * raster.geometry.cell;
+    std::string text = fmt::format(
         "{}: releases {:.6g} m3; the cells of its raster times their thickness are {:.6g} m3, thickness being taken "
         "as {}",
-        label, release.volume, sum * raster.geometry.cell * raster.geometry.cell,
-        release.vertical() ? "vertical" : "normal to the slope (thickness_direction)"));
+        label, release.volume, whole, release.vertical() ? "vertical" : "normal to the slope (thickness_direction)");
+    if (!release.spec.file.empty()) {
+        const double outside = volume_outside(release);
+        text += outside > 0
+                    ? fmt::format("; {:.6g} m3 of these ({:.2g} %) lie outside the polygons and are not released",
+                                  outside, 100 * outside / whole)
+                    : std::string("; none of these lie outside the polygons");
+    }
+    scene.notes.push_back(std::move(text));
 }
 
 Result<terrain::Release> load_release(const ParsedScene& parsed, std::size_t index, Scene& scene) {
@@ -165,7 +189,7 @@ Result<terrain::Release> load_release(const ParsedScene& parsed, std::size_t ind
         const Result<geo::PolygonLayer> layer = read_polygons(spec.file, spec.layer, scene.crs);
         if (!layer) return refused("file", layer.error());
         record_input(label, spec.file, scene);
-        if (!layer->reprojection.empty()) scene.notes.push_back(label + ": " + layer->reprojection);
+        note_changes(label, *layer, scene);
         for (std::size_t feature = 0; feature < layer->features.size(); ++feature) {
             const Result<double> thickness = feature_thickness(spec, *layer, feature);
             if (!thickness) return refused("thickness_attribute", thickness.error());

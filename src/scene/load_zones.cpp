@@ -46,7 +46,7 @@ Result<std::vector<Polygon>> read_outline(const params::ZoneSpec& spec, const st
     }
     TALUS_ASSIGN(const geo::PolygonLayer layer, read_polygons(spec.file, spec.layer, scene.crs));
     record_input(label, spec.file, scene);
-    if (!layer.reprojection.empty()) scene.notes.push_back(label + ": " + layer.reprojection);
+    note_changes(label, layer, scene);
     for (const geo::PolygonFeature& feature : layer.features) {
         parts.insert(parts.end(), feature.parts.begin(), feature.parts.end());
     }

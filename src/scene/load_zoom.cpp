@@ -38,7 +38,7 @@ Result<Polygon> area_from_file(const std::string& at, Scene& scene) {
     const Result<geo::PolygonLayer> layer = read_polygons(spec.polygon_file, spec.layer, scene.crs);
     if (!layer) return Error{at + ": " + layer.error().message};
     record_input("zoom", spec.polygon_file, scene);
-    if (!layer->reprojection.empty()) scene.notes.push_back("zoom: " + layer->reprojection);
+    note_changes("zoom", *layer, scene);
     std::vector<Polygon> parts;
     for (const geo::PolygonFeature& feature : layer->features) {
         parts.insert(parts.end(), feature.parts.begin(), feature.parts.end());

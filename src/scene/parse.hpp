@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <filesystem>
 #include <map>
 #include <string>
@@ -30,6 +31,10 @@ struct ParsedScene {
 
 /// Checks the rules, makes paths absolute and expands `${NAME}` in them.
 [[nodiscard]] Status finish_scene(ParsedScene& scene);
+
+/// "|layername=scar" where the name of a vector file gave the layer and no key did; otherwise nothing.
+[[nodiscard]] std::string layer_behind(const ParsedScene& scene, const params::Section& section, std::size_t index,
+                                       const params::Parameter& parameter);
 
 /// Without line breaks and control characters, which would garble a terminal, and cut after `longest` bytes.
 [[nodiscard]] std::string one_line(std::string_view text, std::size_t longest = 400);

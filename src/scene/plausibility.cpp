@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 
 #include "core/angle.hpp"
+#include "geo/terrain_frame.hpp"
 #include "scene/particle_spacing.hpp"
 
 namespace talus::scene {
@@ -17,7 +18,7 @@ namespace {
 constexpr std::size_t max_samples = 250'000;
 
 // Soil-covered hillsides stand at 25 to 40 degrees, and only cliffs at more than 55.
-constexpr double steepest_median = 42, steepest_tenth = 58, steepest_release = 50;  // degrees
+constexpr double steepest_median = 42, steepest_tenth = 58, steepest_release = 50, steep_release = 45;  // degrees
 /// Deviation of a cell from the mean of its neighbours, in cells: 0.3 is a kink of 33 degrees at every tenth cell.
 constexpr double roughest_tenth = 0.3;
 
@@ -27,12 +28,14 @@ struct Relief {
     double lowest = std::numeric_limits<double>::infinity(), highest = -lowest;
 };
 
-Relief relief_of(const Grid<float>& elevation) {
+Relief relief_of(const Grid<float>& elevation, const ReachableGround& reachable) {
     Relief relief;
     const GridGeometry& g = elevation.geometry;
-    const auto stride = static_cast<int>(std::ceil(std::sqrt(static_cast<double>(g.size()) / max_samples)));
+    const double cells = reachable.cells().value_or(static_cast<double>(g.size()));
+    const int stride = std::max(1, static_cast<int>(std::ceil(std::sqrt(cells / max_samples))));
     for (int r = 1; r + 1 < g.rows; r += stride) {
         for (int c = 1; c + 1 < g.columns; c += stride) {
+            if (!reachable.holds(c, r)) continue;
             const double here = elevation.at(c, r);
             const double west = elevation.at(c - 1, r), east = elevation.at(c + 1, r);
             const double south = elevation.at(c, r - 1), north = elevation.at(c, r + 1);
@@ -74,21 +77,25 @@ std::string count_text(double particles) {
 
 }  // namespace
 
-void note_implausible_terrain(Scene& scene) {
+void note_implausible_terrain(const ReachableGround& reachable, Scene& scene) {
     constexpr double foot = 0.3048;
-    Relief relief = relief_of(scene.terrain.elevation());
+    Relief relief = relief_of(scene.terrain.elevation(), reachable);
     if (relief.slopes.empty()) return;
+    // Debris is released from slopes of 20 degrees and more: in feet, of 50 and more.
+    const auto steep = [&](const terrain::Release& release) { return mean_slope(scene, release) > steep_release; };
+    const bool may_be_feet = scene.releases.empty() || std::any_of(scene.releases.begin(), scene.releases.end(), steep);
     const double median = exceeded_by(0.5, relief.slopes), tenth = exceeded_by(0.1, relief.slopes);
     const double rough = exceeded_by(0.1, relief.roughness);
     const Extent extent = scene.terrain.elevation().geometry.extent();
     const double across = std::max(extent.width(), extent.height()), height = relief.highest - relief.lowest;
 
     std::vector<std::string> found;
-    if (angle(median) > steepest_median || angle(tenth) > steepest_tenth) {
+    if (may_be_feet && (angle(median) > steepest_median || angle(tenth) > steepest_tenth)) {
         found.push_back(fmt::format("half of it is steeper than {:.0f} degrees and a tenth steeper than {:.0f}",
                                     angle(median), angle(tenth)));
     }
-    if (height > across) found.push_back(fmt::format("it is {:.0f} m high on a length of {:.0f} m", height, across));
+    if (may_be_feet && height > across)
+        found.push_back(fmt::format("it is {:.0f} m high on a length of {:.0f} m", height, across));
     if (relief.highest > 9000 || relief.lowest < -1000) {
         found.push_back(fmt::format("elevations go from {:.0f} to {:.0f} m", relief.lowest, relief.highest));
     }
@@ -103,11 +110,17 @@ void note_implausible_terrain(Scene& scene) {
             fmt::format("release \"{}\" lies at {:.0f} degrees, where soil hardly stays", release.name, slope));
     }
     if (found.empty()) return;
+    const params::TerrainSpec& spec = scene.spec.terrain;
+    const std::string feet =
+        may_be_feet ? fmt::format(
+                          " If its elevations are in feet while its plan is in metres, half of it is steeper than "
+                          "{:.0f} degrees in truth: {}.",
+                          angle(foot * median), geo::scale_command(spec.file, spec.band, foot))
+                    : "";
     scene.notes.push_back(
-        fmt::format("terrain: {}; is that so? If its elevations are in feet while its plan is in metres, half of it is "
-                    "steeper than {:.0f} degrees in truth: multiply them by {:.4g} (gdal_calc.py --calc='A*{:.4g}'). A "
-                    "surface model with trees and houses looks so too: use one of the ground",
-                    fmt::join(found, "; "), angle(foot * median), foot, foot));
+        fmt::format("terrain: where debris can go, {}; is that so?{} A surface model with trees and "
+                    "houses looks so{}: use one of the ground",
+                    fmt::join(found, "; "), feet, may_be_feet ? " too" : ""));
 }
 
 void note_coarse_particles(Scene& scene) {

@@ -124,13 +124,17 @@ class Rewriting {
             }
             const auto place = places.find(at);
             std::error_code ignored;
-            // What is not there, the scene's loading says.
-            if (place == places.end() || !fs::is_regular_file(path, ignored)) return;
+            if (place == places.end()) return;
+            // Also a file in an archive, which would be opened as it is: a copy of a table may become one.
+            if (!fs::is_regular_file(path, ignored)) {
+                failed = Error{fmt::format("{}: {}: no such file", parsed.at(at), path)};
+                return;
+            }
             const auto again = write_again(path, section.name, parameter.key, parsed.spec.terrain.band);
             if (!again) {
                 failed = Error{parsed.at(at) + ": " + again.error().message};
             } else {
-                edits.emplace_back(place->second, *again);
+                edits.emplace_back(place->second, *again + layer_behind(parsed, section, index, parameter));
             }
         });
         TALUS_TRY(std::move(failed));

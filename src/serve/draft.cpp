@@ -359,6 +359,10 @@ Result<scene::NewScene> Draft::write_scene(const Wanted& wanted) {
         return Error{"the release is a raster, which holds its own thickness; leave thickness and volume out"};
     }
     if (!wanted.scar.empty()) {
+        if (!wanted.thickness && !wanted.volume) {
+            return Error{
+                "how thick the release is, is not said: give its thickness, normal to the slope, or its volume"};
+        }
         const fs::path drawn = folder_ / "data" / "drawn" / "scar.gpkg";
         std::error_code error;
         fs::remove_all(drawn.parent_path(), error);

@@ -31,6 +31,60 @@ TEST(SceneNew, WritesASceneThatChecksAndRuns) {
     EXPECT_TRUE(fs::exists(inputs.folder() / "talus_out/mine/report.html")) << "named after the scene's folder";
 }
 
+TEST(SceneNew, TakesLayersAPartAndLargerCells) {
+    const SmallScene inputs;
+    const auto created = run_program({"scene",
+                                      "new",
+                                      "--dem",
+                                      "terrain.tif",
+                                      "--dem-layer",
+                                      "terrain",
+                                      "--release",
+                                      "release.geojson|layername=release",
+                                      "--release-feature",
+                                      "0",
+                                      "--thickness-m",
+                                      "1",
+                                      "--extent",
+                                      "824100",
+                                      "825000",
+                                      "824300",
+                                      "825200",
+                                      "--cell",
+                                      "10",
+                                      "-o",
+                                      "mine"},
+                                     {.folder = inputs.folder()});
+    ASSERT_EQ(created.exit_code, 0) << created.error;
+    EXPECT_THAT(created.out, HasSubstr("note: terrain: terrain.tif holds means of 2 x 2 cells"));
+    const auto checked = run_program({"scene", "check", "mine/scene.toml"}, {.folder = inputs.folder()});
+    EXPECT_THAT(checked.out, HasSubstr("20 x 20 cells of 10 m")) << checked.error;
+    const auto refused =
+        run_program({"scene", "new", "--dem", "terrain.tif", "--release", "release.geojson", "-o", "b"},
+                    {.folder = inputs.folder()});
+    EXPECT_EQ(refused.exit_code, 2);
+    EXPECT_THAT(refused.error, HasSubstr("--thickness-m"));
+    EXPECT_FALSE(fs::exists(inputs.folder() / "b"));
+}
+
+TEST(SceneNew, WarnsOfABuildingOnTheRelease) {
+    const SmallScene inputs;
+    write_vector(
+        inputs.input("hut.geojson"), {},
+        {{rectangle_wkt(824205, 825095, 824215, 825105), {}}, {rectangle_wkt(824150, 825090, 824160, 825110), {}}});
+    const auto created = run_program({"scene", "new", "--dem", "terrain.tif", "--release", "release.geojson",
+                                      "--thickness-m", "1", "--buildings", "hut.geojson", "-o", "mine"},
+                                     {.folder = inputs.folder()});
+    ASSERT_EQ(created.exit_code, 0) << created.error;
+    EXPECT_THAT(created.out, HasSubstr("\nWARNING: building \"building 1\" stands on release \"release\" with 100 m2"));
+    const auto run = run_program({"run", "mine/scene.toml", "--set", "solver.end_time_s=0.2", "--set",
+                                  "solver.target_particle_count=300", "-o", "result"},
+                                 {.folder = inputs.folder()});
+    EXPECT_EQ(run.exit_code, 0) << run.error;
+    EXPECT_THAT(run.out, HasSubstr("  WARNING          building \"building 1\" stands on"));
+    EXPECT_THAT(read_text(inputs.input("result/report.html")), HasSubstr("<b>Warning.</b> building"));
+}
+
 TEST(SceneNew, RefusesAFolderThatIsThere) {
     const SmallScene inputs;
     fs::create_directory(inputs.folder() / "mine");

@@ -5,6 +5,7 @@
 
 #include "geo/raster.hpp"
 #include "geo/rasters.hpp"
+#include "geo/terrain_frame.hpp"
 #include "support/fixtures.hpp"
 
 namespace talus::geo {
@@ -81,25 +82,36 @@ TEST_F(BadRaster, TruncatedTextAndRawGrids) {
     }
 }
 
-TEST_F(BadRaster, BlocksThatWereNeverWritten) {
-    // As a copy leaves it that was stopped: the directory is there, half of the blocks are not.
-    const std::string file = folder_.file("sparse.tif");
-    char** options = CSLAddString(CSLAddString(nullptr, "SPARSE_OK=TRUE"), "TILED=YES");
-    GDALAllRegister();
-    {
-        const GDALDatasetUniquePtr data(GetGDALDriverManager()->GetDriverByName("GTiff")->Create(
-            file.c_str(), 1024, 1024, 1, GDT_Float32, options));
-        double transform[6] = {824000, 5, 0, 830000, 0, -5};
-        data->SetGeoTransform(transform);
-        const OGRSpatialReference reference = test::spatial_reference(2326);
-        data->SetSpatialRef(&reference);
-        std::vector<float> half(1024 * 512, 50);
-        ASSERT_EQ(data->GetRasterBand(1)->RasterIO(GF_Write, 0, 0, 1024, 512, half.data(), 1024, 512, GDT_Float32, 0, 0,
-                                                   nullptr),
-                  CE_None);
+TEST_F(BadRaster, BlocksThatWereNeverWrittenAreNodataOr0) {
+    // The directory is there, half of the blocks are not: a sparse raster, or a copy that was stopped.
+    for (const bool declared : {true, false}) {
+        const std::string file = folder_.file(declared ? "declared.tif" : "sparse.tif");
+        char** options = CSLAddString(CSLAddString(nullptr, "SPARSE_OK=TRUE"), "TILED=YES");
+        GDALAllRegister();
+        {
+            const GDALDatasetUniquePtr data(GetGDALDriverManager()->GetDriverByName("GTiff")->Create(
+                file.c_str(), 1024, 1024, 1, GDT_Float32, options));
+            double transform[6] = {824000, 5, 0, 830000, 0, -5};
+            data->SetGeoTransform(transform);
+            const OGRSpatialReference reference = test::spatial_reference(2326);
+            data->SetSpatialRef(&reference);
+            if (declared) data->GetRasterBand(1)->SetNoDataValue(-9999);
+            std::vector<float> half(1024 * 512, 50);
+            ASSERT_EQ(data->GetRasterBand(1)->RasterIO(GF_Write, 0, 0, 1024, 512, half.data(), 1024, 512, GDT_Float32,
+                                                       0, 0, nullptr),
+                      CE_None);
+        }
+        CSLDestroy(options);
+        const auto raster = read_terrain_raster(file, 1, std::nullopt);
+        ASSERT_TRUE(raster) << raster.error().message;
+        EXPECT_EQ(raster->grid.at(500, 1000), 50);
+        if (declared) {
+            EXPECT_TRUE(std::isnan(raster->grid.at(500, 10)));
+        } else {
+            EXPECT_EQ(raster->grid.at(500, 10), 0);
+        }
+        EXPECT_EQ(read_terrain_frame(file, 1)->holes_read_0, !declared);
     }
-    CSLDestroy(options);
-    EXPECT_THAT(refusal(file), HasSubstr("were never written"));
 }
 
 TEST_F(BadRaster, BandThatDoesNotExist) {

@@ -192,10 +192,24 @@ TEST_F(Vectors, NullAndEmptyGeometry) {
 
 TEST_F(Vectors, WrongGeometry) {
     EXPECT_THAT(refusal(write({{"POINT (1 2)"}})), HasSubstr("feature 1 (fid 0) is a Point, a polygon is needed"));
-    EXPECT_THAT(refusal(write({{"LINESTRING (1 2, 3 4)"}})), HasSubstr("is a Line String, a polygon is needed"));
+    EXPECT_THAT(refusal(write({{"LINESTRING (1 2, 3 4)"}})), HasSubstr("is an open line, a polygon is needed"));
+    EXPECT_THAT(refusal(write({{"POINT (1 2)"}})), HasSubstr("is a Point, a polygon is needed"));
     const auto line = read_line(write({{square}}), "", without_wkt);
     ASSERT_FALSE(line.ok());
     EXPECT_THAT(line.error().message, HasSubstr("is a Polygon, a line is needed"));
+}
+
+TEST_F(Vectors, ClosedLinesArePolygons) {
+    const std::string ring = "LINESTRING Z (0 0 1, 40 0 1, 40 30 1, 0 30 1, 0 0 1)";
+    const auto layer =
+        read_polygons(write({{ring}, {"MULTILINESTRING ((50 0, 60 0, 60 10, 50 0))"}, {square}}), "", without_wkt);
+    ASSERT_TRUE(layer.ok()) << layer.error().message;
+    EXPECT_EQ(layer->closed_lines, 2U);
+    EXPECT_EQ(plan_area(layer->features[0].parts[0]), 1200);
+    EXPECT_EQ(plan_area(layer->features[1].parts[0]), 50);
+    EXPECT_THAT(refusal(write({{"LINESTRING (0 0, 40 0, 40 30, 0 30)"}})), HasSubstr("end it where it begins"));
+    EXPECT_THAT(refusal(write({{"LINESTRING (0 0, 40 0, 0 0)"}})), HasSubstr("is an open line"));
+    EXPECT_THAT(refusal(write({{"LINESTRING (0 0, 10 10, 0 10, 10 0, 0 0)"}})), HasSubstr("is not a valid polygon"));
 }
 
 TEST_F(Vectors, MissingCrs) {
@@ -207,11 +221,16 @@ TEST_F(Vectors, MissingCrs) {
 TEST_F(Vectors, SeveralLayersNeedAName) {
     const std::string file = write({{square}}, {.driver = "GPKG", .layer = "first"}, "two.gpkg");
     test::write_vector(file, {.driver = "GPKG", .layer = "second", .append = true}, {{square}, {square}});
-    EXPECT_THAT(refusal(file), HasSubstr("has 2 layers, say which one with layer = \"...\": first, second"));
+    EXPECT_THAT(refusal(file), HasSubstr("has 2 layers; name one of them with layer = \"...\" in the scene, or as " +
+                                         file + "|layername=NAME: first, second"));
     EXPECT_THAT(refusal(file, "third"), HasSubstr("has no layer \"third\"; its layers: first, second"));
     const auto second = read_polygons(file, "second", without_wkt);
     ASSERT_TRUE(second.ok()) << second.error().message;
     EXPECT_EQ(second->features.size(), 2U);
+    const auto behind = read_polygons(file + "|layername=second", "", without_wkt);
+    ASSERT_TRUE(behind.ok()) << behind.error().message;
+    EXPECT_EQ(behind->features.size(), 2U);
+    EXPECT_THAT(refusal(file + "|layername=second", "first"), HasSubstr("and layer = \"first\" another"));
 }
 
 TEST_F(Vectors, LinePartsAreJoinedWhicheverWayTheyRun) {

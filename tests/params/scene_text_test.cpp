@@ -97,6 +97,36 @@ TEST(WriteShortScene, HasTwentyKeysAndWhatDiffers) {
     EXPECT_THAT(text, HasSubstr("\n# friction_coefficient = 0.4\n"));
 }
 
+TEST(WriteScene, EveryCommentedLineIsTheDefault) {
+    SceneSpec spec;
+    spec.releases.resize(1);
+    std::size_t checked = 0;
+    for (const std::string& text : {write_scene(spec), write_short_scene(spec)}) {
+        const Section* section = nullptr;
+        std::istringstream lines(text);
+        for (std::string line; std::getline(lines, line);) {
+            const std::string bare = line.starts_with("# ") ? line.substr(2) : line;
+            if (bare.starts_with('[') && bare.ends_with(']')) {
+                const std::size_t first = bare.find_first_not_of('[');
+                section = find_section(bare.substr(first, bare.find(']') - first));
+                ASSERT_NE(section, nullptr) << line;
+                continue;
+            }
+            const std::size_t is = line.find(" = ");
+            if (!line.starts_with("# ") || is == std::string::npos || line.find(' ', 2) != is) continue;
+            ASSERT_NE(section, nullptr) << line;
+            const Parameter* parameter = section->find(line.substr(2, is - 2));
+            ASSERT_NE(parameter, nullptr) << line;
+            const ParameterValue value = default_value(*section, *parameter);
+            const bool none = std::holds_alternative<std::monostate>(value);
+            EXPECT_EQ(line.substr(is + 3), none ? "none" : toml_text(value)) << section->name;
+            ++checked;
+        }
+    }
+    EXPECT_GT(checked, 150U);
+    EXPECT_THAT(write_short_scene(spec), HasSubstr("\n# turbulent_friction_mps2 = none\n"));
+}
+
 TEST(WriteScene, LinesStayWithinAPage) {
     const std::string text = write_scene(SceneSpec{});
     std::size_t begin = 0;

@@ -7,6 +7,8 @@
 
 #include <gmock/gmock.h>
 
+#include "geo/vector.hpp"
+#include "geo/zip_archive.hpp"
 #include "scene/scene_folder.hpp"
 #include "support/foreign.hpp"
 #include "support/witness.hpp"
@@ -95,6 +97,44 @@ TEST_F(Bundle, KeepsFilesOfOneNameApart) {
     ASSERT_TRUE(bundle) << bundle.error().message;
     EXPECT_THAT(text_of(bundle->scene), HasSubstr("thickness_raster = \"data/data-2.tif\""));
     EXPECT_TRUE(fs::exists(unpacked() / "data" / "data-2.tif"));
+}
+
+TEST_F(Bundle, KeepsALayerThatStandsBehindAFile) {
+    write_valley();
+    for (const char* name : {"scar", "other"}) {
+        geo::OutputFeature feature;
+        const double x = west + (name == std::string("scar") ? 20 : 60);
+        feature.polygon.push_back({{{x, south + 90}, {x + 20, south + 90}, {x + 20, south + 110}}, {}});
+        ASSERT_TRUE(geo::write_geopackage_layer(path("maps.gpkg"), name, {}, {feature}, {"", "", 2326}));
+    }
+    write("scene.toml",
+          "[terrain]\nfile = \"dem.tif\"\n[[release]]\nfile = \"maps.gpkg|layername=scar\"\nthickness_m = 2\n");
+    const auto packed = write_bundle(folder / "scene.toml", archive());
+    ASSERT_TRUE(packed) << packed.error().message;
+    const auto bundle = unpack_bundle(archive(), unpacked(), {}, test::foreign_reader());
+    ASSERT_TRUE(bundle) << bundle.error().message;
+    EXPECT_THAT(text_of(bundle->scene), HasSubstr("file = \"data/maps.gpkg|layername=scar\""));
+    const auto scene = load_scene(bundle->scene);
+    ASSERT_TRUE(scene) << scene.error().message;
+    EXPECT_NEAR(scene->releases.at(0).extent().x_min, west + 20, 1e-6);
+}
+
+TEST_F(Bundle, RefusesFilesThatAreNotThereOrInAnArchiveOfItsOwn) {
+    write_valley();
+    ASSERT_TRUE(geo::write_zip(path("data.zip"), {{"x.geojson", path("release.geojson"), {}}}));
+    const auto with_release = [&](const std::string& file) {
+        pack({{"scene.toml",
+               {},
+               "[terrain]\nfile = \"dem.tif\"\n[[release]]\nfile = \"" + file + "\"\nthickness_m = 2\n"},
+              {"dem.tif", path("dem.tif"), {}},
+              {"data.zip", path("data.zip"), {}}});
+    };
+    with_release("data/absent.gpkg");
+    EXPECT_THAT(refusal(), HasSubstr("absent.gpkg: no such file"));
+    with_release("data.zip/x.geojson");
+    EXPECT_THAT(refusal(), HasSubstr("x.geojson: no such file"));
+    with_release("data.zip");
+    EXPECT_THAT(refusal(), HasSubstr("is no layer of polygons"));
 }
 
 TEST_F(Bundle, RefusesAVirtualRaster) {

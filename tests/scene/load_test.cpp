@@ -146,6 +146,11 @@ TEST_F(LoadScene, AThicknessRasterGivesThicknessWhereItIsAboveZero) {
     const Scene scene = loaded();
     EXPECT_NEAR(scene.releases[0].volume, 400 * std::sqrt(1.29), 4);
     EXPECT_THAT(scene.notes, Contains(HasSubstr("50 % of its area has no thickness")));
+    EXPECT_THAT(scene.notes, Contains(AllOf(HasSubstr("times their thickness are 12000 m3"),
+                                            HasSubstr("11600 m3 of these (97 %) lie outside the polygons"))));
+    const Scene vertical = loaded({"release[0].thickness_direction=vertical"});
+    EXPECT_THAT(vertical.notes, Contains(AllOf(HasSubstr("releases 400 m3; the cells"),
+                                               HasSubstr("thickness being taken as vertical; 11600 m3 of these"))));
     write_terrain("thickness.tif", [&](double, double) { return 0.0; });
     EXPECT_THAT(load_error(), AllOf(StartsWith(line(6)), HasSubstr("no thickness above 0")));
 }

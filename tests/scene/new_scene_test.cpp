@@ -5,9 +5,13 @@
 #include <numbers>
 #include <stdexcept>
 
+#include <gdal_priv.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <ogr_spatialref.h>
 
+#include "geo/vector.hpp"
+#include "geo/zip_archive.hpp"
 #include "scene/check.hpp"
 #include "scene/reach.hpp"
 #include "scene_folder.hpp"
@@ -23,6 +27,7 @@ class NewSceneTest : public SceneFolder {
   protected:
     NewSceneTest() {
         write_valley();
+        write_features("release.geojson", {rectangle(20, 90, 40, 110, "\"thickness_m\": 2")});
         options.dem = path("dem.tif");
         options.release = path("release.geojson");
         options.folder = folder / "new" / "valley";
@@ -78,10 +83,10 @@ TEST_F(NewSceneTest, WorksFromRelativeNames) {
     EXPECT_EQ(loaded(folder / scene->file).releases.size(), 1U);
 }
 
-TEST_F(NewSceneTest, WithoutThicknessTheAssumptionIsWrittenDown) {
-    const Scene scene = loaded(made().file);
-    EXPECT_EQ(scene.spec.releases.at(0).thickness, 2.0);
-    EXPECT_THAT(scene.spec.scene.assumptions, Contains(HasSubstr("2 m thick")));
+TEST_F(NewSceneTest, NoThicknessIsAssumed) {
+    write_features("release.geojson", {rectangle(20, 90, 40, 110, "\"depth\": 2")});
+    EXPECT_THAT(refusal(), AllOf(HasSubstr("give --thickness-m M (normal to the slope) or --volume-m3 M3"),
+                                 HasSubstr("thickness_m or thickness"), HasSubstr("it has depth")));
 }
 
 TEST_F(NewSceneTest, TakesThicknessHeightAndNameFromTheirAttributes) {
@@ -93,6 +98,141 @@ TEST_F(NewSceneTest, TakesThicknessHeightAndNameFromTheirAttributes) {
     EXPECT_EQ(scene.buildings.at(0).name, "House 38");
     EXPECT_EQ(scene.buildings.at(0).height, 9);
     EXPECT_TRUE(scene.spec.scene.assumptions.empty());
+}
+
+TEST_F(NewSceneTest, FindsAttributesInAnyCase) {
+    write_features("release.geojson", {rectangle(20, 90, 40, 110, "\"THICKNESS\": 0.8")});
+    write_features("houses.geojson", {rectangle(200, 90, 210, 100, "\"Height\": 11, \"NAME\": \"Hut\"")});
+    options.buildings = path("houses.geojson");
+    const Scene scene = loaded(made().file);
+    EXPECT_EQ(scene.releases.at(0).patches.at(0).thickness, 0.8);
+    EXPECT_EQ(scene.buildings.at(0).name, "Hut");
+    EXPECT_EQ(scene.buildings.at(0).height, 11);
+}
+
+TEST_F(NewSceneTest, NamesTheColumnsWhereHeightsAreAssumed) {
+    write_features("houses.geojson", {rectangle(200, 90, 210, 100, "\"storeys\": 2")});
+    options.buildings = path("houses.geojson");
+    EXPECT_THAT(made().notes, Contains(AllOf(HasSubstr("no attribute height_m or height (it has storeys)"),
+                                             HasSubstr("6 m high (buildings.default_height_m)"))));
+}
+
+TEST_F(NewSceneTest, TakesALayerBehindTheNameOrOfTheOption) {
+    const geo::Crs crs{"", "", 2326};
+    const auto layer = [&](const char* name, double x) {
+        geo::OutputFeature feature;
+        feature.polygon.push_back(
+            {{{west + x, south + 90}, {west + x + 20, south + 90}, {west + x + 20, south + 110}}, {}});
+        feature.values.emplace_back(1.5);
+        ASSERT_TRUE(geo::write_geopackage_layer(path("maps.gpkg"), name, {{"thickness_m", false}}, {feature}, crs));
+    };
+    layer("release 2024", 20);
+    layer("houses", 200);
+    options.release = path("maps.gpkg");
+    EXPECT_THAT(refusal(), HasSubstr("maps.gpkg|layername=NAME"));
+    options.release_layer = "release 2023";
+    EXPECT_THAT(refusal(), HasSubstr("has no layer \"release 2023\""));
+    options.release_layer = "release 2024";
+    options.buildings = path("maps.gpkg|layername=houses");
+    const Scene scene = loaded(made().file);
+    EXPECT_EQ(scene.spec.releases.at(0).layer, "release 2024");
+    EXPECT_EQ(scene.spec.buildings.layer, "houses");
+    EXPECT_EQ(scene.buildings.size(), 1U);
+    options.folder = folder / "again";
+    options.release = path("maps.gpkg|layername=houses");
+    EXPECT_THAT(refusal(), HasSubstr("names the layer \"houses\", and the option \"release 2024\""));
+}
+
+TEST_F(NewSceneTest, TakesOneFeatureOfSeveral) {
+    write_features("release.geojson", {rectangle(20, 90, 40, 110, "\"Name\": \"upper\", \"thickness_m\": 2"),
+                                       rectangle(60, 90, 90, 110, "\"Name\": \"lower\", \"thickness_m\": 1")});
+    options.release_feature = "name=middle";
+    EXPECT_THAT(refusal(), HasSubstr("has no feature with name=middle; the values there are: upper, lower"));
+    options.release_feature = "7";
+    EXPECT_THAT(refusal(), HasSubstr("has no feature 7; it must be the number that GIS programs show (fid: 0, 1)"));
+    options.release_feature = "name=lower";
+    const Scene scene = loaded(made().file);
+    ASSERT_EQ(scene.releases.at(0).patches.size(), 1U);
+    EXPECT_EQ(scene.releases.at(0).patches.at(0).thickness, 1);
+    EXPECT_EQ(plan_area(scene.releases.at(0).patches.at(0).polygon), 600);
+    EXPECT_EQ(scene.spec.releases.at(0).file, (options.folder / "release.gpkg").string());
+}
+
+TEST_F(NewSceneTest, TakesTheExtentAndCoarserCells) {
+    options.extent = Extent{west + 10, south + 50, west + 200, south + 150};
+    options.cell = 10;
+    const NewScene coarse = made();
+    const Scene scene = loaded(coarse.file);
+    EXPECT_EQ(scene.terrain.elevation().geometry, (GridGeometry{west + 10, south + 50, 10, 19, 10}));
+    EXPECT_EQ(scene.spec.terrain.file, (options.folder / "terrain.tif").string());
+    EXPECT_FALSE(scene.spec.terrain.extent);
+    EXPECT_NEAR(scene.terrain.elevation().at(5, 5), valley(west + 65, south + 105), 0.6);
+    options.folder = folder / "again";
+    options.cell.reset();
+    EXPECT_EQ(loaded(made().file).terrain.elevation().geometry, (GridGeometry{west + 10, south + 50, 5, 38, 20}));
+}
+
+TEST_F(NewSceneTest, RefusesAnExtentOrCellsThatCannotBe) {
+    options.extent = Extent{west + 200, south, west, south + 100};
+    EXPECT_THAT(refusal(), HasSubstr("it must be XMIN YMIN XMAX YMAX"));
+    options.extent = Extent{west + 100, south, west + 300, south + 200};
+    EXPECT_THAT(refusal(), HasSubstr("release \"release\" lies outside the terrain"));
+    options.extent.reset();
+    options.cell = 2;
+    EXPECT_THAT(refusal(), HasSubstr("has cells of 5 m, and it must be a multiple of that"));
+    options.cell = 12;
+    EXPECT_THAT(refusal(), HasSubstr("whole multiple of 5 m, the cells of " + path("dem.tif") + ": 10 or 15"));
+}
+
+TEST_F(NewSceneTest, OfALargeRasterOnlyWhatDebrisCanReachIsRead) {
+    // 300 million cells over 100 km x 75 km that hold nothing; the ground of the valley lies in one block.
+    char** sparse = CSLAddString(CSLAddString(nullptr, "SPARSE_OK=TRUE"), "TILED=YES");
+    GDALAllRegister();
+    {
+        const GDALDatasetUniquePtr data(GetGDALDriverManager()->GetDriverByName("GTiff")->Create(
+            path("large.tif").c_str(), 20000, 15000, 1, GDT_Float32, sparse));
+        double transform[6] = {west - 50000, cell, 0, south + 37500, 0, -cell};
+        data->SetGeoTransform(transform);
+        OGRSpatialReference reference;
+        reference.importFromEPSG(2326);
+        data->SetSpatialRef(&reference);
+        data->GetRasterBand(1)->SetNoDataValue(-9999);
+        std::vector<float> ground;
+        for (int line = 0; line < rows; ++line) {
+            for (int column = 0; column < columns; ++column) {
+                ground.push_back(
+                    static_cast<float>(valley(west + (column + 0.5) * cell, south + (rows - line - 0.5) * cell)));
+            }
+        }
+        ASSERT_EQ(data->GetRasterBand(1)->RasterIO(GF_Write, 10000, 7500 - rows, columns, rows, ground.data(), columns,
+                                                   rows, GDT_Float32, 0, 0, nullptr),
+                  CE_None);
+    }
+    CSLDestroy(sparse);
+    const Extent small = *loaded(made().file).spec.terrain.extent;
+    options.folder = folder / "large";
+    options.dem = path("large.tif");
+    const Extent large = *loaded(made().file).spec.terrain.extent;
+    EXPECT_LE(large.x_min, small.x_min);
+    EXPECT_GE(large.x_max, small.x_max);
+    EXPECT_LT(large.width(), 2000);
+}
+
+TEST_F(NewSceneTest, ReadsArchivesAndNamesThemInTheScene) {
+    ASSERT_TRUE(geo::write_zip(path("dem.zip"), {{"valley.tif", path("dem.tif"), {}}}));
+    ASSERT_TRUE(geo::write_zip(path("scar.zip"), {{"scar.geojson", path("release.geojson"), {}}}));
+    options.dem = path("dem.zip");
+    options.release = path("scar.zip");
+    const NewScene packed = made();
+    EXPECT_THAT(text_of(packed.file),
+                AllOf(HasSubstr("\nfile = \"../../dem.zip\"\n"), HasSubstr("\nname = \"scar\"\n")));
+    EXPECT_EQ(loaded(packed.file).releases.size(), 1U);
+    options.folder = folder / "again";
+    options.dem = path("dem.zip/valley.tif");
+    const NewScene named = made();
+    EXPECT_THAT(text_of(named.file), HasSubstr("\nfile = \"../dem.zip/valley.tif\"\n"));
+    const Scene scene = loaded(named.file);
+    EXPECT_THAT(scene.inputs, Contains(testing::Field(&InputFile::path, path("dem.zip"))));
 }
 
 TEST_F(NewSceneTest, TheExtentLeavesOutWhatDebrisCannotReach) {

@@ -116,7 +116,11 @@ TEST_F(NewScenePage, says_what_is_wrong_with_a_terrain_and_mends_it) {
     EXPECT_EQ(client_->post(draft_ + "/mend", {{"epsg", "EPSG:2326"}}).status, 400);
     const Answer mended = client_->post(draft_ + "/mend", {{"epsg", 2326}});
     EXPECT_TRUE(mended.json()["terrain"]["problem"].is_null()) << mended.body;
-    EXPECT_EQ(check({{"scar", scar()}}).status, 200);
+    EXPECT_EQ(check({{"scar", scar()}, {"thickness_m", 2}}).status, 200);
+
+    const Answer asked = check({{"scar", scar()}});
+    EXPECT_EQ(asked.status, 400);
+    EXPECT_THAT(asked.body, HasSubstr("give its thickness, normal to the slope, or its volume"));
 
     // Degrees are brought to metres.
     options.epsg = 4326;
@@ -142,9 +146,10 @@ TEST_F(NewScenePage, says_what_is_wrong_with_a_terrain_and_mends_it) {
     EXPECT_THAT(still.json()["terrain"]["problem"].dump(), HasSubstr("no elevation"));
     const Answer good = client_->post(draft_ + "/mend", {{"metres_per_unit", 0.3048}, {"nodata", -99999}});
     EXPECT_TRUE(good.json()["terrain"]["problem"].is_null()) << good.body;
-    const Answer checked = check({{"scar", scar()}});
+    const Answer checked = check({{"scar", scar()}, {"thickness_m", 2}});
     EXPECT_THAT(checked.json()["summary"].dump(), HasSubstr("vertical unit: m")) << checked.body;
-    const json made = client_->post(draft_ + "/scene", {{"title", "Feet"}, {"scar", scar()}}).json();
+    const json made =
+        client_->post(draft_ + "/scene", {{"title", "Feet"}, {"thickness_m", 2}, {"scar", scar()}}).json();
     open({{"scene", made["created"]}});
     const json elevation = client_->get("/api/scene").json()["elevation_m"];
     EXPECT_NEAR(elevation[1], (1000 + 8 * 53) * 0.3048, 0.1) << "of column 53: the extent ends there";
@@ -517,7 +522,7 @@ TEST_F(NewScenePage, damaged_files_are_refused_in_a_sentence_or_taken_and_harm_n
     EXPECT_EQ(client_->ask("DELETE", draft_).status, 200);
     draft_ = "/api/draft/" + begin();
     ASSERT_EQ(put_file("terrain", scene_.input("terrain.tif")).status, 200);
-    EXPECT_EQ(check({{"scar", scar()}}).status, 200);
+    EXPECT_EQ(check({{"scar", scar()}, {"thickness_m", 2}}).status, 200);
 }
 
 }  // namespace

@@ -105,7 +105,7 @@ export async function testStart(run) {
     for (const [x, y] of [...corners, corners[0]]) await map.click({ position: { x, y } });
     // Its slope is 21.8 degrees, and it falls to the west edge.
     assert.match(await until(facts, (text) => /Flow path/.test(text), "the way downhill"), /slope 22°.*\(mean 21\.\d°\), to the edge of the terrain/);
-    await page.locator("text=Ready to run").waitFor();
+    await page.locator("text=give its thickness, normal to the slope, or its volume").waitFor();
     assert.equal(await page.inputValue("[aria-label='Title of the scene']"), "west slope");
     await page.click("text=Volume");
     await page.fill("[aria-label='Thickness or volume']", "500");

@@ -20,7 +20,7 @@ const slots: readonly (readonly [DraftRole, string, string])[] = [
 export class NewScene {
   private readonly said = h("div", { class: "new-said", "aria-live": "polite" });
   private readonly title = h("input", { type: "text", maxlength: 100, "aria-label": "Title of the scene", placeholder: "Title", oninput: () => this.later() });
-  private readonly amount = h("input", { type: "number", step: "any", min: 0, "aria-label": "Thickness or volume", placeholder: "Default 2 m", onchange: () => this.later() });
+  private readonly amount = h("input", { type: "number", step: "any", min: 0, "aria-label": "Thickness or volume", placeholder: "Not given", onchange: () => this.later() });
   private readonly unit = h("span", { class: "muted" }, "m, normal to the slope");
   private readonly amounts = h("div", { class: "row wrap" }, choice("How much is released", [["thickness", "Thickness"], ["volume", "Volume"]], "thickness", (value) => {
     this.byVolume = value === "volume";
@@ -206,7 +206,7 @@ export class NewScene {
   private showChecked(found: Checked): void {
     this.create.disabled = false;
     this.said.replaceChildren(h("div", { class: "card new-good" }, h("b", {}, "Ready to run"), h("pre", {}, found.summary),
-      found.notes.length === 0 ? null : h("ul", {}, ...found.notes.map((note) => h("li", {}, note)))));
+      found.notes.length === 0 ? null : h("ul", {}, ...found.notes.map((note) => h("li", {}, note.startsWith("WARNING: ") ? h("b", {}, note) : note)))));
   }
   private async finish(): Promise<void> {
     this.create.disabled = true;
