@@ -25,6 +25,7 @@
 #include "scene/builtin.hpp"
 #include "scene/scene.hpp"
 #include "scene_input.hpp"
+#include "state_file.hpp"
 #include "summary.hpp"
 #include "variant_plan.hpp"
 
@@ -50,6 +51,10 @@ the deposit, 15 % of force and pressure, and the same buildings.
 --zoom NAME runs the event with the depth-averaged model, and with particles only what comes near a building or barrier:
 what crosses a rectangle --zoom-margin metres around it becomes inflow there. --zoom-polygon FILE takes another area. The
 section [zoom] of a scene is the same, and has the spacing of its particles. What leaves the area is not fed back.
+
+--save-state FILE saves the state of the particles at the end, FILE@TIME after the step that reaches TIME seconds.
+--from-state FILE starts from it: the results are those of the run that was not interrupted, to the bit. The scene must be
+the same but for solver.end_time_s, so that a longer one continues a run.
 )";
 
 /// Everything that is checked before a run: the scene, its variants, the output folder.
@@ -59,6 +64,8 @@ struct Job {
     std::unique_ptr<DefaultParent> parent;  ///< of the output folder, unless the user named that
     fs::path shown;                         ///< the output folder as the user wrote it
     products::OutputFolder output;
+    std::optional<SavedState> save = {};  ///< --save-state
+    std::string start_from = {};          ///< the state of --from-state; empty: none
 };
 
 /// What the options of a zoom set.
@@ -85,6 +92,14 @@ Status check_zoom_options(const RunArguments& arguments, const scene::Scene& sce
     return {};
 }
 
+/// Errors: what cannot be together with a state to start from.
+Status check_from_state(const RunArguments& arguments) {
+    if (arguments.from_state.empty()) return {};
+    const bool others = arguments.convergence || arguments.named_variants || !arguments.variations.empty();
+    if (!others) return {};
+    return Error{"--from-state is refused beside --convergence, --variants and --vary, whose runs start at 0 s"};
+}
+
 Result<Job> open_job(const RunArguments& arguments, ProgressReporter& progress, InterruptWatch& watch) {
     std::vector<std::string> overrides = arguments.overrides;
     if (!arguments.model.empty()) overrides.push_back("solver.model=" + arguments.model);
@@ -108,9 +123,18 @@ Result<Job> open_job(const RunArguments& arguments, ProgressReporter& progress, 
     }
 
     TALUS_TRY(check_zoom_options(arguments, input.scene));
+    TALUS_TRY(check_from_state(arguments));
+    std::string start_from;
+    if (!arguments.from_state.empty()) {
+        TALUS_ASSIGN(start_from, read_state_file(arguments.from_state, input.scene));
+    }
     std::unique_ptr<DefaultParent> parent;
     if (arguments.output.empty()) parent = std::make_unique<DefaultParent>();
     const fs::path shown = parent ? fs::path(DefaultParent::name) / input.short_name : fs::path(arguments.output);
+    std::optional<SavedState> save;
+    if (!arguments.save_state.empty()) {
+        TALUS_ASSIGN(save, read_save_option(arguments.save_state, input.scene, shown));
+    }
     TALUS_ASSIGN(auto output, products::OutputFolder::create(shown, arguments.force));
     watch.remove_at_once(output.path());
 
@@ -124,7 +148,8 @@ Result<Job> open_job(const RunArguments& arguments, ProgressReporter& progress, 
     progress.clear();
     if (settled && arguments.json) (void)print(cost_json(*settled) + "\n");
     if (settled && !arguments.json && !arguments.quiet) (void)std::fputs((cost_text(*settled) + "\n").c_str(), stderr);
-    return Job{std::move(input), std::move(plan), std::move(parent), shown, std::move(output)};
+    return Job{std::move(input),  std::move(plan), std::move(parent),    shown,
+               std::move(output), std::move(save), std::move(start_from)};
 }
 
 /// Callbacks during the run: progress, Ctrl-C, and the run over time if the scene requests it.
@@ -134,6 +159,12 @@ class RunCallbacks {
         : job_(job), progress_(progress), watch_(watch), notes_said_(arguments.quiet || arguments.json) {
         options_.stop_requested = &watch.stop_requested();
         options_.on_progress = [this](const run::Progress& now) { report(now); };
+        options_.start_from = job.start_from;
+        options_.start_from_file = arguments.from_state;
+        if (job.save) {
+            options_.save_time = job.save->time;
+            options_.on_state = [this](const std::string& state, double time) { save(state, time); };
+        }
         if (!products::Series::wanted(job.input.scene)) return;
         series_.emplace(job.input.scene, job.output.path() / "series", job.output.final_path() / "series");
         options_.on_frame = [this](const run::Frame& frame) {
@@ -145,13 +176,22 @@ class RunCallbacks {
     RunCallbacks& operator=(const RunCallbacks&) = delete;
 
     [[nodiscard]] const run::RunOptions& options() const { return options_; }
-    /// The run has ended. Errors: the run over time cannot be written.
+    /// The run has ended. Errors: the run over time or its state cannot be written.
     [[nodiscard]] Status finish(const run::RunResult& result) {
+        TALUS_TRY(state_status_);
         if (series_ && series_status_) series_status_ = series_->finish(result);
         return series_status_;
     }
 
   private:
+    void save(const std::string& state, double time) {
+        const SavedState& wanted = *job_.save;
+        state_status_ = write_state_file(wanted.file, state);
+        if (!state_status_ || !wanted.time || time >= *wanted.time - 1e-9) return;
+        progress_.say(
+            fmt::format("{} has the state at {:.6g} s, when the run ended before the {:.6g} s of --save-state",
+                        wanted.file.string(), time, *wanted.time));
+    }
     void report(const run::Progress& now) {
         // Notes are printed only now: an invalid input is refused with a single line.
         if (!std::exchange(notes_said_, true)) {
@@ -166,7 +206,7 @@ class RunCallbacks {
     bool notes_said_;
     run::RunOptions options_;
     std::optional<products::Series> series_;
-    Status series_status_;
+    Status series_status_, state_status_;
 };
 
 Status write_report(Job& job, const run::RunResult& result, const std::vector<run::Comparison>& comparisons,
@@ -255,6 +295,9 @@ void add_run(CLI::App& program, std::vector<Command>& commands) {
         ->excludes(zoom);
     app->add_option("--zoom-margin", run->zoom_margin, "m, from the structure to the boundary of the zoom; default: 15")
         ->type_name("M");
+    app->add_option("--save-state", run->save_state, "save the state at the end, or at TIME seconds, to start from")
+        ->type_name("FILE[@TIME]");
+    app->add_option("--from-state", run->from_state, "start from a saved state of the same scene")->type_name("FILE");
     add_data_folder(*app, run->data);
     CLI::Option* quiet = app->add_flag("--quiet", run->quiet, "print only errors");
     app->add_flag("--json", run->json, "progress and result as one JSON object per line on stdout")->excludes(quiet);

@@ -23,6 +23,8 @@ struct RunArguments {
     std::string zoom{};                   ///< of --zoom: a structure; empty: not given
     std::string zoom_polygon{};           ///< of --zoom-polygon: a file; empty: not given
     std::optional<double> zoom_margin{};  ///< m
+    std::string save_state{};             ///< of --save-state: FILE[@TIME]; empty: not given
+    std::string from_state{};             ///< of --from-state: a file; empty: not given
     std::string data;                     ///< value of TALUS_DATA; empty: as in the environment
     bool quiet = false, json = false;
     bool convergence = false;             ///< run three refinements too and compare

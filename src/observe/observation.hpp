@@ -88,6 +88,14 @@ struct BuildingImpact {
     double peak_filling_height = 0;         ///< m, mean depth along the face where it was deepest, of the samples
 
     std::vector<StructureSample> history{};  ///< from the first hit on, at the times of the time series
+
+    template <class Archive>
+    void keep(Archive& archive) {
+        archive(name, hit, first_hit_time, peak_force, peak_impact_pressure, peak_depth, peak_dynamic_pressure,
+                peak_speed, removed_time, impulse, failure_time, is_barrier, passing_share, overtopped_volume,
+                first_overtopping_time, passed_volume, retained_volume, peak_retained_volume, peak_filling_height,
+                history);
+    }
 };
 
 /// "building", "barrier" or "net".

@@ -158,6 +158,14 @@ struct Observer::Parts {
         gauges.after_step(time, row, [&](const PlanPoint& place) { return maps.at(place); });
     }
 
+    template <class Archive>
+    void keep(Archive& archive) {
+        archive(maps, gauges, front, impact, energy, released, start, injected, timeseries, next_row,
+                compression.worst_mean, compression.worst_max, compression.worst_overcompressed_share,
+                compression.worst_mean_time, compression.worst_max_time, compression.worst_overcompressed_time,
+                compressed_time, iterated_time, iterations, steps);
+    }
+
     params::OutputSpec outputs;
     const sim::device::Backend* backend = nullptr;  ///< that `on_device` reads
     std::unique_ptr<device::Particles> on_device;
@@ -257,6 +265,16 @@ void Observer::forget_building(const sim::Model& model, const sim::Ground& groun
 
 const std::vector<std::size_t>& Observer::failed_buildings() const {
     return parts_->impact.failed();
+}
+
+void Observer::save(ArchiveWriter& archive) {
+    archive(*parts_);
+}
+
+void Observer::restore(ArchiveReader& archive) {
+    archive(*parts_);
+    if (parts_->timeseries.empty()) archive.fail();  // it has a row from the beginning on
+    if (parts_->on_device) parts_->on_device->forget_walls();
 }
 
 const Overtopping* Observer::overtopping(std::size_t building) const {

@@ -5,6 +5,7 @@
 #include <memory>
 #include <vector>
 
+#include "core/archive.hpp"
 #include "observe/map_accumulator.hpp"
 #include "observe/observation.hpp"
 #include "observe/overtopping.hpp"
@@ -48,6 +49,10 @@ class Observer final : public sim::StepWatcher {
     /// Resets the record of a building, for example after it was moved.
     void forget_building(const sim::Model& model, const sim::Ground& ground, const sim::State& state,
                          std::size_t building);
+
+    /// What has been measured so far: an observer made of the same scene that reads it goes on as this one.
+    void save(ArchiveWriter& archive);
+    void restore(ArchiveReader& archive);
 
     /// Debris that has crossed a barrier's line; nullptr: not a barrier, or a failed one.
     [[nodiscard]] const Overtopping* overtopping(std::size_t building) const;

@@ -127,6 +127,21 @@ void Run::follow_gauge(std::size_t inflow, const std::vector<params::InflowSampl
     stop_rule_.reset(summary().time);
 }
 
+void Run::save(ArchiveWriter& archive) {
+    simulation_.save(archive);
+    observer_.save(archive);
+    archive(stop_rule_, phase_, stop_reason_, smallest_time_step_, largest_time_step_);
+}
+
+void Run::restore(ArchiveReader& archive) {
+    threads_.execute([&] { simulation_.restore(archive); });
+    observer_.restore(archive);
+    archive(stop_rule_, phase_, stop_reason_, smallest_time_step_, largest_time_step_);
+    if (archive.failed()) return;
+    observer_.expect(summary().seeded + simulation_.inflow().remaining());
+    if (phase_ == RunPhase::ended) stop(RunPhase::ready, "");
+}
+
 RunStatus Run::status() const {
     return phase_ == RunPhase::fault   ? RunStatus::fault
            : phase_ == RunPhase::ready ? RunStatus::interrupted
