@@ -50,6 +50,12 @@ std::string barrier_text(const observe::BuildingImpact& barrier) {
                        barrier.retained_volume);
 }
 
+std::string discharge_text(const observe::DischargeRecord& r) {
+    if (std::isnan(r.peak_time)) return fmt::format("{}: nothing passed", r.section.name);
+    return fmt::format("{}: peak {:.3g} m3/s at {:.1f} s, {:.1f} m3 passed", r.section.name, r.peak_discharge,
+                       r.peak_time, r.passed);
+}
+
 std::string speed_text(double speed) {
     return std::isfinite(speed) ? fmt::format("{:.1f} m/s", speed) : std::string("not known");
 }
@@ -167,6 +173,7 @@ std::string summary_text(const scene::Scene& scene, const run::RunResult& result
     text += line("volume", fmt::format("{:.1f} m3 released: {:.1f} deposited, {:.1f} moving, {:.1f} left the {}",
                                        seen.volume_released, end.volume_deposited, end.volume_moving + end.volume_held,
                                        end.volume_left, result.domain()));
+    for (const observe::DischargeRecord& r : seen.cross_sections) text += line("discharge", discharge_text(r));
     if (!scene.bed.empty()) {
         text += line("entrained", fmt::format("{:.1f} m3 from the bed", seen.erosion.volume));
     }
@@ -207,6 +214,13 @@ std::string summary_json(const scene::Scene& scene, const run::RunResult& result
                              {"peak_impact_pressure_kPa", building->peak_impact_pressure / 1000},
                              {"peak_depth_m", building->peak_depth}});
     }
+    auto sections = nlohmann::ordered_json::array();
+    for (const observe::DischargeRecord& r : seen.cross_sections) {
+        sections.push_back({{"name", r.section.name},
+                            {"peak_discharge_m3ps", r.peak_discharge},
+                            {"peak_discharge_time_s", number_or_null<nlohmann::ordered_json>(r.peak_time)},
+                            {"passed_m3", r.passed}});
+    }
     nlohmann::ordered_json event = {
         {"event", "result"},
         {"status", status_name(result.status)},
@@ -241,6 +255,7 @@ std::string summary_json(const scene::Scene& scene, const run::RunResult& result
         {"observations", observations},
         {"buildings_hit", buildings},
         {"structures", products::structures_json(seen)},
+        {"cross_sections", sections},
         {"compression", result.depth_averaged() ? nlohmann::ordered_json() : products::compression_json(seen)},
     };
     event.update(products::comparisons_json(comparisons));

@@ -9,6 +9,7 @@
 #include "core/geometry.hpp"
 #include "core/grid.hpp"
 #include "params/spec.hpp"
+#include "terrain/cross_section.hpp"
 #include "terrain/flow_path.hpp"
 #include "terrain/gauge.hpp"
 #include "terrain/terrain.hpp"
@@ -157,6 +158,20 @@ struct GaugeRecord {
     std::vector<GaugeSample> rows{};                 ///< at the times of the time series
 };
 
+struct DischargeSample {
+    double time = 0;       ///< s, end of an interval
+    double discharge = 0;  ///< m3/s, mean over it
+    double passed = 0;     ///< m3, until then
+};
+
+/// What passed a cross-section, from its left to its right less what came back.
+struct DischargeRecord {
+    terrain::CrossSection section;
+    double passed = 0;                             ///< m3
+    double peak_discharge = 0, peak_time = never;  ///< m3/s, of the row with the greatest, in either direction; s
+    std::vector<DischargeSample> rows{};
+};
+
 /// Erosion of the bed by debris.
 struct Erosion {
     Grid<float> depth;  ///< m, vertical, on the terrain's cells around what was eroded; NaN: none. Empty: no bed
@@ -227,6 +242,7 @@ struct Observation {
     std::vector<BuildingImpact> buildings;  ///< as in Ground::buildings
     std::vector<TimeSample> timeseries;
     std::vector<GaugeRecord> gauges;
+    std::vector<DischargeRecord> cross_sections;
     double volume_released = 0;  ///< m3, less the removed volume
     Compression compression;
     /// Share of the volume that rounding may gain or lose: depths in single precision do, whole particles do not.

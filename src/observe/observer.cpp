@@ -7,6 +7,7 @@
 #include "observe/building_impact.hpp"
 #include "observe/debris.hpp"
 #include "observe/device/particles.hpp"
+#include "observe/discharge.hpp"
 #include "observe/energy.hpp"
 #include "observe/erosion.hpp"
 #include "observe/front_tracker.hpp"
@@ -140,6 +141,7 @@ struct Observer::Parts {
         debris.add_to(maps);
         front.after_step(ground, debris);
         impact.after_step(model, ground, debris);
+        sections.after_step(debris);
         const sim::StateSummary& state = debris.summary();
         watch_compression(model, state);
         steps_per_second = rate_now;
@@ -160,7 +162,7 @@ struct Observer::Parts {
 
     template <class Archive>
     void keep(Archive& archive) {
-        archive(maps, gauges, front, impact, energy, released, start, injected, timeseries, next_row,
+        archive(maps, gauges, sections, front, impact, energy, released, start, injected, timeseries, next_row,
                 compression.worst_mean, compression.worst_max, compression.worst_overcompressed_share,
                 compression.worst_mean_time, compression.worst_max_time, compression.worst_overcompressed_time,
                 compressed_time, iterated_time, iterations, steps);
@@ -171,6 +173,7 @@ struct Observer::Parts {
     std::unique_ptr<device::Particles> on_device;
     MapAccumulator maps;
     GaugeRecorder gauges;
+    ParticleSections sections;
     FrontTracker front;
     ImpactRecorder impact;
     EnergyAccount energy;
@@ -227,6 +230,7 @@ void Observer::follow(const sim::Model& model, const sim::Ground& ground, const 
     p.maps.add(state);
     p.front.follow(state);
     p.impact.follow(model, ground, state);
+    p.sections.forget_places();
     if (p.on_device) p.on_device->forget_walls();
 }
 
@@ -249,6 +253,11 @@ void Observer::follow_inflow(const sim::Model& model, const sim::Ground& ground,
 void Observer::watch(const std::vector<terrain::Gauge>& gauges) {
     parts_->gauges = GaugeRecorder(gauges, parts_->outputs.arrival_depth);
     parts_->read_gauges(parts_->timeseries.back().time, true);
+}
+
+void Observer::watch(const sim::Model& model, const sim::Ground& ground, const sim::State& state,
+                     const std::vector<terrain::CrossSection>& sections) {
+    parts_->sections = ParticleSections(model, ground.terrain, sections, state);
 }
 
 void Observer::expect(std::uint32_t particles) {
@@ -347,6 +356,7 @@ Observation Observer::finish(const sim::Model& model, const sim::Ground& ground,
     observation.buildings = p.impact.complete(state);
     observation.timeseries = p.timeseries;
     observation.gauges = p.gauges.records();
+    observation.cross_sections = p.sections.records(state.time);
     if (p.timeseries.back().time < state.time) observation.timeseries.push_back(now);
     observation.erosion = measure_erosion(ground, p.front.flow_path(), p.outputs.chainage_interval);
     observation.volume_released = state.released() * model.particle_volume();

@@ -44,6 +44,9 @@ class Observer final : public sim::StepWatcher {
                 std::uint32_t first_new_id);
     /// Records the flow at these places from now on.
     void watch(const std::vector<terrain::Gauge>& gauges);
+    /// Records what passes these lines from now on.
+    void watch(const sim::Model& model, const sim::Ground& ground, const sim::State& state,
+               const std::vector<terrain::CrossSection>& sections);
     /// Reserves memory for this number of particles, so that injecting them allocates nothing.
     void expect(std::uint32_t particles);
     /// Resets the record of a building, for example after it was moved.

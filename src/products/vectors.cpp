@@ -178,6 +178,18 @@ Status write_gauges(const scene::Scene& scene, const observe::Observation& obser
                                   features, scene.crs);
 }
 
+/// A line per cross-section.
+Status write_cross_sections(const scene::Scene& scene, const observe::Observation& observation,
+                            const std::string& file) {
+    std::vector<geo::OutputFeature> features;
+    for (const observe::DischargeRecord& r : observation.cross_sections) {
+        features.push_back({{}, r.section.line, {r.section.name, r.peak_discharge, r.peak_time, r.passed}});
+    }
+    return write_geopackage_layer(file, "cross_sections",
+                                  {{"name", true}, {"peak_discharge_m3ps"}, {"peak_discharge_time_s"}, {"passed_m3"}},
+                                  features, scene.crs);
+}
+
 Status write_zoom(const scene::Scene& scene, const run::ZoomRecord& zoom, const std::string& file) {
     return write_geopackage_layer(file, "zoom", {{"around", true}, {"volume_in_m3"}, {"particle_spacing_m"}},
                                   {{{zoom.area}, {}, {zoom.around, zoom.brought_volume, zoom.particle_spacing}}},
@@ -210,6 +222,10 @@ std::vector<DrawnLayer> drawn_layers(const scene::Scene& scene, const run::RunRe
         const VectorSymbol gauge{blue, {255, 255, 255}, 255, 0.3, Kind::point};
         layers.push_back({"gauges", "Gauges", true, qgis_vector_style(gauge, "name")});
     }
+    if (!result.observation.cross_sections.empty()) {
+        const VectorSymbol section{{}, red, 255, 0.6, Kind::line};
+        layers.push_back({"cross_sections", "Cross-sections", true, qgis_vector_style(section, "name")});
+    }
     if (result.zoom) {
         const VectorSymbol boundary{red, red, 0, 0.5};
         layers.push_back({"zoom", "Boundary of the zoom", true, qgis_vector_style(boundary)});
@@ -241,6 +257,7 @@ Status write_vectors(const scene::Scene& scene, const run::RunResult& result, co
     TALUS_TRY(write_outline(scene, observation.maps.peak_depth, least, "inundation", file));
     TALUS_TRY(write_outline(scene, observation.maps.deposit_depth, least, "deposit", file));
     if (!observation.gauges.empty()) TALUS_TRY(write_gauges(scene, observation, file));
+    if (!observation.cross_sections.empty()) TALUS_TRY(write_cross_sections(scene, observation, file));
     if (result.zoom) TALUS_TRY(write_zoom(scene, *result.zoom, file));
     std::vector<geo::LayerStyle> styles;
     for (const DrawnLayer& layer : drawn_layers(scene, result)) {

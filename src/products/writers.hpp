@@ -20,16 +20,23 @@ namespace talus::products {
 [[nodiscard]] Status write_maps(const scene::Scene& scene, const run::RunResult& result,
                                 const std::filesystem::path& folder, LayerDefinition& layers);
 
-/// front.csv, run_out.csv, buildings.csv, structures_over_time.csv, timeseries.csv, and erosion.csv where there is a
-/// bed. A value that does not exist is an empty field. `changed`: as for write_products.
+/// front.csv, run_out.csv, buildings.csv, structures_over_time.csv, timeseries.csv, and erosion.csv, gauges.csv and
+/// discharge.csv where there is a bed, a gauge or a cross-section. A value that does not exist is an empty field.
+/// `changed`: as for write_products.
 [[nodiscard]] Status write_tables(const scene::Scene& scene, const run::RunResult& result,
                                   const std::filesystem::path& folder, std::string_view changed = {});
 
 /// results.gpkg with the layers buildings, release, intensity (polygons of each class), inundation and deposit
 /// (outlines of what is deeper than outputs.arrival_depth_m), flow_path and chainage (a short line across the path per
-/// mark), gauges and zoom (its boundary) where there are any, and their styles for QGIS. They are added to `layers`.
+/// mark), gauges, cross_sections and zoom (its boundary) where there are any, and their styles for QGIS. They are added
+/// to `layers`.
 [[nodiscard]] Status write_vectors(const scene::Scene& scene, const run::RunResult& result,
                                    const std::filesystem::path& folder, LayerDefinition& layers);
+
+/// Adds a layer contours_<map> to results.gpkg for every map of outputs.contours, lines with map, value and unit; to
+/// `layers` too.
+[[nodiscard]] Status write_contours(const scene::Scene& scene, const run::RunResult& result,
+                                    const std::filesystem::path& folder, LayerDefinition& layers);
 
 /// results.kml, for Google Earth and phones: structures that were hit, with when and how hard, the outline of
 /// inundation and bands of arrival time. None where the reference system is local.

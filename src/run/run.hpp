@@ -30,6 +30,7 @@ struct RunStart {
     terrain::FlowPath flow_path = {};  ///< empty: no front against chainage
     params::OutputSpec outputs = {};
     std::vector<terrain::Gauge> gauges = {};
+    std::vector<terrain::CrossSection> cross_sections = {};
     /// Continues at rest, beyond solver.end_time and after a fault: the caller decides when it ends.
     bool endless = false;
     /// m: the flow path is a first guess, and the result is along the path that debris followed. 0: it stays.

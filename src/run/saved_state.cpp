@@ -20,12 +20,13 @@ using StateJson = nlohmann::ordered_json;
 /// Whether a value has part in the debris or in what is measured of it. The others say when a run ends, how fast it is
 /// computed, or what is written about it.
 bool counts(const params::Section& section, const params::Parameter& parameter) {
-    constexpr std::array<std::string_view, 14> sections = {
-        "terrain",    "flow_path", "material", "solver",          "zone",    "release", "bed", "inflow",
-        "hydrograph", "buildings", "barrier",  "barrier_opening", "outputs", "gauge"};
-    constexpr std::array<std::string_view, 8> other_keys = {
+    constexpr std::array<std::string_view, 15> sections = {
+        "terrain",    "flow_path", "material", "solver",          "zone",    "release", "bed",          "inflow",
+        "hydrograph", "buildings", "barrier",  "barrier_opening", "outputs", "gauge",   "cross_section"};
+    constexpr std::array<std::string_view, 10> other_keys = {
         "solver.end_time_s",         "solver.thread_count",    "solver.backend",         "outputs.series",
-        "outputs.series_interval_s", "outputs.geoid_height_m", "outputs.peak_thickness", "outputs.intensity_guideline"};
+        "outputs.series_interval_s", "outputs.geoid_height_m", "outputs.peak_thickness", "outputs.intensity_guideline",
+        "outputs.contours",          "outputs.tracks"};
     const std::string key = section.name + "." + parameter.key;
     // What is in a file counts, not where it lies.
     return parameter.kind != params::ParameterKind::path &&
