@@ -14,12 +14,13 @@
 #include "core/try.hpp"
 #include "default_parent.hpp"
 #include "exit_code.hpp"
+#include "extras.hpp"
 #include "interrupt.hpp"
 #include "layers.hpp"
+#include "params/contours.hpp"
 #include "params/fields.hpp"
 #include "params/scene_text.hpp"
 #include "products/products.hpp"
-#include "products/series.hpp"
 #include "progress.hpp"
 #include "run/run_scene.hpp"
 #include "scene/builtin.hpp"
@@ -108,6 +109,10 @@ Result<Job> open_job(const RunArguments& arguments, ProgressReporter& progress, 
     if (!arguments.series.empty()) {
         overrides.push_back(fmt::format("outputs.series=[\"{}\"]", fmt::join(arguments.series, "\", \"")));
     }
+    if (!arguments.contours.empty()) {
+        overrides.push_back(fmt::format("outputs.contours=[\"{}\"]", fmt::join(arguments.contours, "\", \"")));
+    }
+    if (arguments.tracks) overrides.push_back(fmt::format("outputs.tracks={}", *arguments.tracks));
     TALUS_ASSIGN(auto input, open_scene(arguments.scene, overrides, arguments.layers, watch));
     if (input.scene.spec.solver.model == params::ModelChoice::depth_averaged) {
         const params::BackendChoice backend = input.scene.spec.solver.backend;
@@ -115,6 +120,7 @@ Result<Job> open_job(const RunArguments& arguments, ProgressReporter& progress, 
         const char* refused = device                      ? "a backend other than the processor"
                               : !arguments.layers.empty() ? "--layers"
                               : arguments.convergence     ? "--convergence"
+                              : arguments.tracks          ? "--tracks"
                                                           : nullptr;
         if (refused != nullptr) {
             return Error{fmt::format(
@@ -152,46 +158,22 @@ Result<Job> open_job(const RunArguments& arguments, ProgressReporter& progress, 
                std::move(output), std::move(save), std::move(start_from)};
 }
 
-/// Callbacks during the run: progress, Ctrl-C, and the run over time if the scene requests it.
+/// Progress during the run, and Ctrl-C.
 class RunCallbacks {
   public:
     RunCallbacks(const RunArguments& arguments, const Job& job, ProgressReporter& progress, InterruptWatch& watch)
-        : job_(job), progress_(progress), watch_(watch), notes_said_(arguments.quiet || arguments.json) {
+        : job_(job), progress_(progress), notes_said_(arguments.quiet || arguments.json) {
         options_.stop_requested = &watch.stop_requested();
         options_.on_progress = [this](const run::Progress& now) { report(now); };
         options_.start_from = job.start_from;
         options_.start_from_file = arguments.from_state;
-        if (job.save) {
-            options_.save_time = job.save->time;
-            options_.on_state = [this](const std::string& state, double time) { save(state, time); };
-        }
-        if (!products::Series::wanted(job.input.scene)) return;
-        series_.emplace(job.input.scene, job.output.path() / "series", job.output.final_path() / "series");
-        options_.on_frame = [this](const run::Frame& frame) {
-            if (series_status_) series_status_ = series_->add(frame);
-            if (!series_status_) watch_.request_stop();
-        };
     }
     RunCallbacks(const RunCallbacks&) = delete;
     RunCallbacks& operator=(const RunCallbacks&) = delete;
 
-    [[nodiscard]] const run::RunOptions& options() const { return options_; }
-    /// The run has ended. Errors: the run over time or its state cannot be written.
-    [[nodiscard]] Status finish(const run::RunResult& result) {
-        TALUS_TRY(state_status_);
-        if (series_ && series_status_) series_status_ = series_->finish(result);
-        return series_status_;
-    }
+    [[nodiscard]] run::RunOptions& options() { return options_; }
 
   private:
-    void save(const std::string& state, double time) {
-        const SavedState& wanted = *job_.save;
-        state_status_ = write_state_file(wanted.file, state);
-        if (!state_status_ || !wanted.time || time >= *wanted.time - 1e-9) return;
-        progress_.say(
-            fmt::format("{} has the state at {:.6g} s, when the run ended before the {:.6g} s of --save-state",
-                        wanted.file.string(), time, *wanted.time));
-    }
     void report(const run::Progress& now) {
         // Notes are printed only now: an invalid input is refused with a single line.
         if (!std::exchange(notes_said_, true)) {
@@ -202,16 +184,13 @@ class RunCallbacks {
 
     const Job& job_;
     ProgressReporter& progress_;
-    InterruptWatch& watch_;
     bool notes_said_;
     run::RunOptions options_;
-    std::optional<products::Series> series_;
-    Status series_status_, state_status_;
 };
 
 Status write_report(Job& job, const run::RunResult& result, const std::vector<run::Comparison>& comparisons,
-                    InterruptWatch& watch) {
-    TALUS_TRY(products::write_products(job.input.scene, result, job.output.path(), comparisons));
+                    std::vector<std::string>& failures, InterruptWatch& watch) {
+    TALUS_TRY(products::write_products(job.input.scene, result, job.output.path(), comparisons, "", &failures));
     // Replacing an earlier result takes two renames; a second Ctrl-C must not fall between them.
     const auto lock = watch.hold();
     return job.output.commit();
@@ -230,11 +209,14 @@ int run_command(const RunArguments& arguments) {
     const scene::Scene& scene = job->input.scene;
 
     RunCallbacks callbacks(arguments, *job, progress, watch);
+    Extras extras(scene, job->save, job->output.path(), job->output.final_path(),
+                  [&](const std::string& what) { progress.say(what); });
+    extras.take_part(callbacks.options());
     const auto result = run_scene(scene, callbacks.options());  // run; its observer measures every step
     progress.clear();
     if (!result && watch.stop_requested()) return fail(exit_code::interrupted, result.error().message);
     if (!result) return fail(exit_code::bad_input, result.error().message);
-    if (Status s = callbacks.finish(*result); !s) return fail(exit_code::failure, s.error().message);
+    extras.finish(*result);
 
     const auto comparisons = job->plan.run(scene, *result, progress, watch.stop_requested());
     const bool interrupted =
@@ -243,7 +225,7 @@ int run_command(const RunArguments& arguments) {
          !std::all_of(comparisons.begin(), comparisons.end(), [](const run::Comparison& c) { return c.all_ran(); }));
     progress.say(interrupted ? "interrupted: writing the results so far" : "writing maps, tables and report");
     take_followed_path(job->input.scene, *result);
-    const Status written = write_report(*job, *result, comparisons, watch);  // report
+    const Status written = write_report(*job, *result, comparisons, extras.failures(), watch);  // report
     progress.clear();
     if (!written) return fail(exit_code::failure, written.error().message);
 
@@ -254,6 +236,12 @@ int run_command(const RunArguments& arguments) {
         summary = summary_text(scene, *result, comparisons, job->shown);
     }
     const int printed = print_result(summary, interrupted ? exit_code::interrupted : exit_code::success);
+    if (!extras.failures().empty()) {
+        const auto failed = extras.failures().size();
+        const std::string more = failed > 1 ? fmt::format(" (and {} more)", failed - 1) : "";
+        return fail(exit_code::failure, fmt::format("{}{}; all other results are in {}", extras.failures().front(),
+                                                    more, job->shown.string()));
+    }
     if (result->status != run::RunStatus::fault) return printed;
     return fail(exit_code::fault, fmt::format("{}; the results so far are in {}, marked partial", result->stop_reason,
                                               job->shown.string()));
@@ -277,6 +265,17 @@ void add_run(CLI::App& program, std::vector<Command>& commands) {
                                 fmt::join(params::series_formats, ", ")))
         ->delimiter(',')
         ->type_name("FORMAT,...");
+    app->add_option("--contours", run->contours,
+                    fmt::format("also write contours of a map at these values, in the unit of its file, into "
+                                "results.gpkg; may be repeated; maps: {}",
+                                fmt::join(params::contour_maps, ", ")))
+        ->type_name("MAP=VALUE,VALUE")
+        ->allow_extra_args(false);
+    app->add_option("--tracks", run->tracks,
+                    "also write the ways of N particles, evenly chosen, at outputs.series_interval_s; default: 200")
+        ->type_name("N")
+        ->expected(0, 1)
+        ->default_str("200");
     add_overrides(*app, run->overrides);
     add_backend(*app, run->overrides);
     add_layers(*app, run->layers, true);

@@ -20,6 +20,8 @@ struct RunArguments {
     std::string layers;                   ///< of --layers; empty: not given
     std::string model{};                  ///< of --model; empty: the scene's
     std::vector<std::string> series{};    ///< of --series; empty: the scene's
+    std::vector<std::string> contours{};  ///< of --contours; empty: the scene's
+    std::optional<int> tracks{};          ///< of --tracks; absent: the scene's
     std::string zoom{};                   ///< of --zoom: a structure; empty: not given
     std::string zoom_polygon{};           ///< of --zoom-polygon: a file; empty: not given
     std::optional<double> zoom_margin{};  ///< m

@@ -36,13 +36,14 @@ Status write_report(const scene::Scene& scene, const run::RunResult& result,
 }  // namespace
 
 Status write_products(const scene::Scene& scene, const run::RunResult& result, const std::filesystem::path& folder,
-                      const std::vector<run::Comparison>& comparisons, std::string_view changed) {
+                      const std::vector<run::Comparison>& comparisons, std::string_view changed,
+                      std::vector<std::string>* missing) {
     TALUS_TRY(write_partial_note(result, folder));
     if (result.fault) TALUS_TRY(write_fault(*result.fault, folder / "fault"));
     LayerDefinition layers(title_of(scene, result), scene.crs.wkt);
     TALUS_TRY(write_maps(scene, result, folder, layers));
     TALUS_TRY(write_tables(scene, result, folder, changed));
-    TALUS_TRY(write_vectors(scene, result, folder, layers));
+    TALUS_TRY(write_vectors(scene, result, folder, layers, missing));
     TALUS_TRY(layers.write(folder));
     TALUS_TRY(write_kml(scene, result, folder));
     TALUS_TRY(write_comparisons(comparisons, result, folder));

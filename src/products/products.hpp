@@ -43,10 +43,11 @@ class OutputFolder {
 /// results.json, report.html; where there are comparisons with variants of the scene, convergence.csv and variants.csv
 /// too; PARTIAL.txt where the run did not end by itself, and the folder fault where a step could not be trusted. Errors
 /// name the file and the cause (disk full, ...). `changed`: what was changed during the run, which the tables then say
-/// in a last column; empty: nothing.
+/// in a last column; empty: nothing. Contours are written only where the scene asks for them; why some are missing is
+/// added to `missing`, and is an error without that.
 [[nodiscard]] Status write_products(const scene::Scene& scene, const run::RunResult& result,
                                     const std::filesystem::path& folder,
-                                    const std::vector<run::Comparison>& comparisons = {},
-                                    std::string_view changed = {});
+                                    const std::vector<run::Comparison>& comparisons = {}, std::string_view changed = {},
+                                    std::vector<std::string>* missing = nullptr);
 
 }  // namespace talus::products

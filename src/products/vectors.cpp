@@ -247,7 +247,7 @@ std::vector<DrawnLayer> drawn_layers(const scene::Scene& scene, const run::RunRe
 }  // namespace
 
 Status write_vectors(const scene::Scene& scene, const run::RunResult& result, const std::filesystem::path& folder,
-                     LayerDefinition& layers) {
+                     LayerDefinition& layers, std::vector<std::string>* missing) {
     const std::string file = (folder / "results.gpkg").string();
     const observe::Observation& observation = result.observation;
     TALUS_TRY(write_buildings(scene, observation, file));
@@ -259,7 +259,16 @@ Status write_vectors(const scene::Scene& scene, const run::RunResult& result, co
     if (!observation.gauges.empty()) TALUS_TRY(write_gauges(scene, observation, file));
     if (!observation.cross_sections.empty()) TALUS_TRY(write_cross_sections(scene, observation, file));
     if (result.zoom) TALUS_TRY(write_zoom(scene, *result.zoom, file));
+    std::vector<WrittenLayer> contours;
+    if (Status drawn = write_contours(scene, result, file, contours); !drawn) {
+        if (missing == nullptr) return drawn;
+        missing->push_back(drawn.error().message);
+    }
     std::vector<geo::LayerStyle> styles;
+    for (const WrittenLayer& layer : contours) {
+        styles.push_back({layer.table, layer.style});
+        layers.add_vector(layer.title, "results.gpkg", layer.table, layer.style, true);
+    }
     for (const DrawnLayer& layer : drawn_layers(scene, result)) {
         styles.push_back({layer.table, layer.style});
         layers.add_vector(layer.title, "results.gpkg", layer.table, layer.style, layer.shown);
