@@ -13,17 +13,19 @@
 #include "command.hpp"
 #include "core/try.hpp"
 #include "exit_code.hpp"
+#include "extras.hpp"
 #include "interrupt.hpp"
 #include "layers.hpp"
+#include "params/contours.hpp"
 #include "params/fields.hpp"
 #include "params/scene_text.hpp"
 #include "products/products.hpp"
-#include "products/series.hpp"
 #include "progress.hpp"
 #include "run/run_scene.hpp"
 #include "scene/builtin.hpp"
 #include "scene/scene.hpp"
 #include "scene_input.hpp"
+#include "state_file.hpp"
 #include "summary.hpp"
 #include "variant_plan.hpp"
 
@@ -49,6 +51,10 @@ the deposit, 15 % of force and pressure, and the same buildings.
 --zoom NAME runs the event with the depth-averaged model, and with particles only what comes near a building or barrier:
 what crosses a rectangle --zoom-margin metres around it becomes inflow there. --zoom-polygon FILE takes another area. The
 section [zoom] of a scene is the same, and has the spacing of its particles. What leaves the area is not fed back.
+
+--save-state FILE saves the state of the particles at the end, FILE@TIME after the step that reaches TIME seconds.
+--from-state FILE starts from it: the results are those of the run that was not interrupted, to the bit. The scene must be
+the same but for solver.end_time_s, so that a longer one continues a run.
 )";
 
 /// Everything that is checked before a run: the scene, its variants, the output folder.
@@ -57,6 +63,8 @@ struct Job {
     VariantPlan plan;
     fs::path shown;  ///< the output folder as the user wrote it
     products::OutputFolder output;
+    std::optional<SavedState> save = {};  ///< --save-state
+    std::string start_from = {};          ///< the state of --from-state; empty: none
 };
 
 /// What the options of a zoom set.
@@ -83,6 +91,14 @@ Status check_zoom_options(const RunArguments& arguments, const scene::Scene& sce
     return {};
 }
 
+/// Errors: what cannot be together with a state to start from.
+Status check_from_state(const RunArguments& arguments) {
+    if (arguments.from_state.empty()) return {};
+    const bool others = arguments.convergence || arguments.named_variants || !arguments.variations.empty();
+    if (!others) return {};
+    return Error{"--from-state is refused beside --convergence, --variants and --vary, whose runs start at 0 s"};
+}
+
 Result<Job> open_job(const RunArguments& arguments, ProgressReporter& progress, InterruptWatch& watch) {
     std::vector<std::string> overrides = arguments.overrides;
     if (!arguments.model.empty()) overrides.push_back("solver.model=" + arguments.model);
@@ -91,6 +107,10 @@ Result<Job> open_job(const RunArguments& arguments, ProgressReporter& progress, 
     if (!arguments.series.empty()) {
         overrides.push_back(fmt::format("outputs.series=[\"{}\"]", fmt::join(arguments.series, "\", \"")));
     }
+    if (!arguments.contours.empty()) {
+        overrides.push_back(fmt::format("outputs.contours=[\"{}\"]", fmt::join(arguments.contours, "\", \"")));
+    }
+    if (arguments.tracks) overrides.push_back(fmt::format("outputs.tracks={}", *arguments.tracks));
     TALUS_ASSIGN(auto input, open_scene(arguments.scene, overrides, arguments.layers, watch));
     if (input.scene.spec.solver.model == params::ModelChoice::depth_averaged) {
         const params::BackendChoice backend = input.scene.spec.solver.backend;
@@ -98,6 +118,7 @@ Result<Job> open_job(const RunArguments& arguments, ProgressReporter& progress, 
         const char* refused = device                      ? "a backend other than the processor"
                               : !arguments.layers.empty() ? "--layers"
                               : arguments.convergence     ? "--convergence"
+                              : arguments.tracks          ? "--tracks"
                                                           : nullptr;
         if (refused != nullptr) {
             return Error{fmt::format(
@@ -106,7 +127,16 @@ Result<Job> open_job(const RunArguments& arguments, ProgressReporter& progress, 
     }
 
     TALUS_TRY(check_zoom_options(arguments, input.scene));
+    TALUS_TRY(check_from_state(arguments));
+    std::string start_from;
+    if (!arguments.from_state.empty()) {
+        TALUS_ASSIGN(start_from, read_state_file(arguments.from_state, input.scene));
+    }
     const fs::path shown = arguments.output.empty() ? default_output(input.short_name) : fs::path(arguments.output);
+    std::optional<SavedState> save;
+    if (!arguments.save_state.empty()) {
+        TALUS_ASSIGN(save, read_save_option(arguments.save_state, input.scene, shown));
+    }
     TALUS_ASSIGN(auto output, products::OutputFolder::create(shown, arguments.force));
     watch.remove_at_once(output.path());
 
@@ -120,34 +150,23 @@ Result<Job> open_job(const RunArguments& arguments, ProgressReporter& progress, 
     progress.clear();
     if (settled && arguments.json) (void)print(cost_json(*settled) + "\n");
     if (settled && !arguments.json && !arguments.quiet) (void)std::fputs((cost_text(*settled) + "\n").c_str(), stderr);
-    return Job{std::move(input), std::move(plan), shown, std::move(output)};
+    return Job{std::move(input), std::move(plan), shown, std::move(output), std::move(save), std::move(start_from)};
 }
 
-/// Callbacks during the run: progress, Ctrl-C, and the run over time if the scene requests it.
+/// Progress during the run, and Ctrl-C.
 class RunCallbacks {
   public:
     RunCallbacks(const RunArguments& arguments, const Job& job, ProgressReporter& progress, InterruptWatch& watch)
-        : job_(job), progress_(progress), watch_(watch), notes_said_(arguments.quiet || arguments.json) {
+        : job_(job), progress_(progress), notes_said_(arguments.quiet || arguments.json) {
         options_.stop_requested = &watch.stop_requested();
         options_.on_progress = [this](const run::Progress& now) { report(now); };
-        if (!products::Series::wanted(job.input.scene)) return;
-        series_.emplace(job.input.scene, job.output.path() / "series", job.output.final_path() / "series");
-        options_.on_frame = [this](const run::Frame& frame) {
-            if (series_status_) series_status_ = series_->add(frame);
-            if (!series_status_) watch_.request_stop();
-        };
+        options_.start_from = job.start_from;
+        options_.start_from_file = arguments.from_state;
     }
     RunCallbacks(const RunCallbacks&) = delete;
     RunCallbacks& operator=(const RunCallbacks&) = delete;
 
-    [[nodiscard]] const run::RunOptions& options() const { return options_; }
-    /// The run has ended. Errors: the run over time cannot be written.
-    [[nodiscard]] Status finish(const run::RunResult& result) {
-        if (series_ && series_status_) series_status_ = series_->finish(result);
-        return series_status_;
-    }
-    /// Of the run over time, s; empty: none was written.
-    [[nodiscard]] std::vector<double> frame_times() const { return series_ ? series_->times() : std::vector<double>(); }
+    [[nodiscard]] run::RunOptions& options() { return options_; }
 
   private:
     void report(const run::Progress& now) {
@@ -160,16 +179,14 @@ class RunCallbacks {
 
     const Job& job_;
     ProgressReporter& progress_;
-    InterruptWatch& watch_;
     bool notes_said_;
     run::RunOptions options_;
-    std::optional<products::Series> series_;
-    Status series_status_;
 };
 
 Status write_report(Job& job, const run::RunResult& result, const std::vector<run::Comparison>& comparisons,
-                    const std::vector<double>& frame_times, InterruptWatch& watch) {
-    TALUS_TRY(products::write_products(job.input.scene, result, job.output.path(), comparisons, {}, frame_times));
+                    Extras& extras, InterruptWatch& watch) {
+    TALUS_TRY(products::write_products(job.input.scene, result, job.output.path(), comparisons, {},
+                                       extras.frame_times(), &extras.failures()));
     // Replacing an earlier result takes two renames; a second Ctrl-C must not fall between them.
     const auto lock = watch.hold();
     return job.output.commit();
@@ -188,11 +205,14 @@ int run_command(const RunArguments& arguments) {
     const scene::Scene& scene = job->input.scene;
 
     RunCallbacks callbacks(arguments, *job, progress, watch);
+    Extras extras(scene, job->save, job->output.path(), job->output.final_path(),
+                  [&](const std::string& what) { progress.say(what); });
+    extras.take_part(callbacks.options());
     const auto result = run_scene(scene, callbacks.options());  // run; its observer measures every step
     progress.clear();
     if (!result && watch.stop_requested()) return fail(exit_code::interrupted, result.error().message);
     if (!result) return fail(exit_code::bad_input, result.error().message);
-    if (Status s = callbacks.finish(*result); !s) return fail(exit_code::failure, s.error().message);
+    extras.finish(*result);
 
     const auto comparisons = job->plan.run(scene, *result, progress, watch.stop_requested());
     const bool interrupted =
@@ -201,7 +221,7 @@ int run_command(const RunArguments& arguments) {
          !std::all_of(comparisons.begin(), comparisons.end(), [](const run::Comparison& c) { return c.all_ran(); }));
     progress.say(interrupted ? "interrupted: writing the results so far" : "writing maps, tables and report");
     take_followed_path(job->input.scene, *result);
-    const Status written = write_report(*job, *result, comparisons, callbacks.frame_times(), watch);  // report
+    const Status written = write_report(*job, *result, comparisons, extras, watch);  // report
     progress.clear();
     if (!written) return fail(exit_code::failure, written.error().message);
 
@@ -212,6 +232,12 @@ int run_command(const RunArguments& arguments) {
         summary = summary_text(scene, *result, comparisons, job->shown);
     }
     const int printed = print_result(summary, interrupted ? exit_code::interrupted : exit_code::success);
+    if (!extras.failures().empty()) {
+        const auto failed = extras.failures().size();
+        const std::string more = failed > 1 ? fmt::format(" (and {} more)", failed - 1) : "";
+        return fail(exit_code::failure, fmt::format("{}{}; all other results are in {}", extras.failures().front(),
+                                                    more, job->shown.string()));
+    }
     if (result->status != run::RunStatus::fault) return printed;
     return fail(exit_code::fault, fmt::format("{}; the results so far are in {}, marked partial", result->stop_reason,
                                               job->shown.string()));
@@ -235,6 +261,17 @@ void add_run(CLI::App& program, std::vector<Command>& commands) {
                                 fmt::join(params::series_formats, ", ")))
         ->delimiter(',')
         ->type_name("FORMAT,...");
+    app->add_option("--contours", run->contours,
+                    fmt::format("also write contours of a map at these values, in the unit of its file, into "
+                                "results.gpkg; may be repeated; maps: {}",
+                                fmt::join(params::contour_maps, ", ")))
+        ->type_name("MAP=VALUE,VALUE")
+        ->allow_extra_args(false);
+    app->add_option("--tracks", run->tracks,
+                    "also write the ways of N particles, evenly chosen, at outputs.series_interval_s; default: 200")
+        ->type_name("N")
+        ->expected(0, 1)
+        ->default_str("200");
     add_overrides(*app, run->overrides);
     add_backend(*app, run->overrides);
     add_layers(*app, run->layers, true);
@@ -253,6 +290,9 @@ void add_run(CLI::App& program, std::vector<Command>& commands) {
         ->excludes(zoom);
     app->add_option("--zoom-margin", run->zoom_margin, "m, from the structure to the boundary of the zoom; default: 15")
         ->type_name("M");
+    app->add_option("--save-state", run->save_state, "save the state at the end, or at TIME seconds, to start from")
+        ->type_name("FILE[@TIME]");
+    app->add_option("--from-state", run->from_state, "start from a saved state of the same scene")->type_name("FILE");
     add_data_folder(*app, run->data);
     CLI::Option* quiet = app->add_flag("--quiet", run->quiet, "print only errors");
     app->add_flag("--json", run->json, "progress and result as one JSON object per line on stdout")->excludes(quiet);

@@ -53,6 +53,12 @@ std::string barrier_text(const observe::BuildingImpact& barrier, int decimals) {
         barrier.retained_volume, decimals);
 }
 
+std::string discharge_text(const observe::DischargeRecord& r, int decimals) {
+    if (std::isnan(r.peak_time)) return fmt::format("{}: nothing passed", r.section.name);
+    return fmt::format("{}: peak {:.3g} m3/s at {:.1f} s, {:.{}f} m3 passed", r.section.name, r.peak_discharge,
+                       r.peak_time, r.passed, decimals);
+}
+
 std::string speed_text(double speed) {
     return std::isfinite(speed) ? fmt::format("{:.1f} m/s", speed) : std::string("not known");
 }
@@ -172,6 +178,8 @@ std::string summary_text(const scene::Scene& scene, const run::RunResult& result
                  fmt::format("{0:.{5}f} m3 released: {1:.{5}f} deposited, {2:.{5}f} moving, {3:.{5}f} left the {4}",
                              seen.volume_released, end.volume_deposited, end.volume_moving + end.volume_held,
                              end.volume_left, result.domain(), decimals));
+    for (const observe::DischargeRecord& r : seen.cross_sections)
+        text += line("discharge", discharge_text(r, decimals));
     if (!scene.bed.empty()) {
         text += line("entrained", fmt::format("{:.{}f} m3 from the bed", seen.erosion.volume, decimals));
     }
@@ -213,6 +221,13 @@ std::string summary_json(const scene::Scene& scene, const run::RunResult& result
                              {"peak_impact_pressure_kPa", building->peak_impact_pressure / 1000},
                              {"peak_depth_m", building->peak_depth}});
     }
+    auto sections = nlohmann::ordered_json::array();
+    for (const observe::DischargeRecord& r : seen.cross_sections) {
+        sections.push_back({{"name", r.section.name},
+                            {"peak_discharge_m3ps", r.peak_discharge},
+                            {"peak_discharge_time_s", number_or_null<nlohmann::ordered_json>(r.peak_time)},
+                            {"passed_m3", r.passed}});
+    }
     nlohmann::ordered_json event = {
         {"event", "result"},
         {"status", status_name(result.status)},
@@ -247,6 +262,7 @@ std::string summary_json(const scene::Scene& scene, const run::RunResult& result
         {"observations", observations},
         {"buildings_hit", buildings},
         {"structures", products::structures_json(seen)},
+        {"cross_sections", sections},
         {"compression", result.depth_averaged() ? nlohmann::ordered_json() : products::compression_json(seen)},
     };
     event.update(products::comparisons_json(comparisons));

@@ -20,9 +20,13 @@ struct RunArguments {
     std::string layers;                   ///< of --layers; empty: not given
     std::string model{};                  ///< of --model; empty: the scene's
     std::vector<std::string> series{};    ///< of --series; empty: the scene's
+    std::vector<std::string> contours{};  ///< of --contours; empty: the scene's
+    std::optional<int> tracks{};          ///< of --tracks; absent: the scene's
     std::string zoom{};                   ///< of --zoom: a structure; empty: not given
     std::string zoom_polygon{};           ///< of --zoom-polygon: a file; empty: not given
     std::optional<double> zoom_margin{};  ///< m
+    std::string save_state{};             ///< of --save-state: FILE[@TIME]; empty: not given
+    std::string from_state{};             ///< of --from-state: a file; empty: not given
     std::string data;                     ///< value of TALUS_DATA; empty: as in the environment
     bool quiet = false, json = false;
     bool convergence = false;             ///< run three refinements too and compare

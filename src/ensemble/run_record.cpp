@@ -6,18 +6,16 @@
 #include <exception>
 #include <fstream>
 #include <limits>
-#include <string_view>
 #include <system_error>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include "core/angle.hpp"
-#include "core/hash.hpp"
 #include "core/number_or_null.hpp"
 #include "core/try.hpp"
 #include "ensemble/predict.hpp"
-#include "products/text_file.hpp"
+#include "products/checked_file.hpp"
 #include "report/hazard_map.hpp"
 
 namespace talus::ensemble {
@@ -27,21 +25,7 @@ using Json = nlohmann::ordered_json;
 
 static_assert(std::endian::native == std::endian::little, "records are written as the machine holds them");
 
-constexpr std::string_view signature = "talus run 2 ";  // before the checksum
-
-std::string first_line(std::uint64_t checksum) {
-    return std::string(signature) + to_hex(checksum) + "\n";
-}
-
-/// Of everything after the first line. FNV-1a maps states to states one to one, so one changed byte changes the sum.
-std::uint64_t checksum_of(std::ifstream& in) {
-    StateHash sum;
-    std::vector<char> block(std::size_t{1} << 16);
-    while (in.read(block.data(), static_cast<std::streamsize>(block.size())) || in.gcount() > 0) {
-        sum.add(block.data(), static_cast<std::size_t>(in.gcount()));
-    }
-    return sum.value();
-}
+constexpr products::CheckedFileKind record_file{"talus run 2 ", "record of a run"};
 
 /// Of the maps that belong to a record; more than any file has if they cannot be.
 std::uintmax_t map_bytes(const RunRecord& record) {
@@ -167,9 +151,7 @@ std::vector<double> measure(const scene::Scene& scene, const run::RunResult& res
 
 Status write_run_record(const std::filesystem::path& file, const std::string& plan, const RunRecord& record,
                         const observe::HazardMaps& maps) {
-    std::string text = first_line(0);
-    const std::size_t begin = text.size();
-    text += header_json(plan, record).dump(-1, ' ', false, Json::error_handler_t::replace) + "\n";
+    std::string text = header_json(plan, record).dump(-1, ' ', false, Json::error_handler_t::replace) + "\n";
     for (const auto map : recorded_maps) {
         const std::vector<float>& values = (maps.*map).values;
         if (values.size() != record.geometry.size()) continue;  // a run that failed has none
@@ -177,26 +159,13 @@ Status write_run_record(const std::filesystem::path& file, const std::string& pl
         text.resize(at + values.size() * sizeof(float));
         std::memcpy(text.data() + at, values.data(), values.size() * sizeof(float));
     }
-    StateHash sum;
-    sum.add(text.data() + begin, text.size() - begin);
-    text.replace(0, begin, first_line(sum.value()));
-    return products::replace_text_file(file, text);
+    return write_checked_file(file, record_file, text);
 }
 
 Result<RunRecord> read_run_record(const std::filesystem::path& file, const std::string& plan, std::size_t run,
                                   Verify verify) {
-    std::ifstream in(file, std::ios::binary);
-    std::string first, header;
-    if (!in || !std::getline(in, first)) return Error{file.string() + ": cannot be read"};
-    const std::streampos begin = in.tellg();
-    if (!first.starts_with(signature)) return Error{file.string() + ": is no record of a run, or of another version"};
-    if (verify == Verify::bytes) {
-        if (first + "\n" != first_line(checksum_of(in))) {
-            return Error{file.string() + ": is damaged: its checksum is not that of its contents"};
-        }
-        in.clear();
-        in.seekg(begin);
-    }
+    TALUS_ASSIGN(auto in, open_checked_file(file, record_file, verify));
+    std::string header;
     std::getline(in, header);
     try {
         const Json json = Json::parse(header);

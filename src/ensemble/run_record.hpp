@@ -9,6 +9,7 @@
 #include "core/grid.hpp"
 #include "core/result.hpp"
 #include "observe/observation.hpp"
+#include "products/checked_file.hpp"
 #include "run/run_result.hpp"
 #include "run/verdict.hpp"
 #include "scene/scene.hpp"
@@ -60,10 +61,7 @@ inline constexpr std::array<Grid<float> observe::HazardMaps::*, 5> recorded_maps
 [[nodiscard]] Status write_run_record(const std::filesystem::path& file, const std::string& plan,
                                       const RunRecord& record, const observe::HazardMaps& maps);
 
-enum class Verify {
-    bytes,   ///< also the checksum, for which the whole file is read
-    header,  ///< of a file that this process has verified or written before
-};
+using products::Verify;
 
 /// Run `run` of the plan without its maps. Errors: missing, damaged, of another plan or run.
 [[nodiscard]] Result<RunRecord> read_run_record(const std::filesystem::path& file, const std::string& plan,

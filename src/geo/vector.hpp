@@ -71,6 +71,8 @@ struct OutputFeature {
     std::vector<Polygon> polygon;   ///< either this
     std::vector<PlanPoint> line;    ///< or this; of a single point: a point
     std::vector<Attribute> values;  ///< one per field
+    /// Of a line that has them, as many as it has points: elevations, m, and measures, such as times.
+    std::vector<double> z = {}, m = {};
 };
 
 /// Writes (appends) a layer to a GeoPackage, creating the file when needed.

@@ -27,6 +27,10 @@ bool is_point(const OutputFeature& feature) {
     return feature.polygon.empty() && feature.line.size() == 1;
 }
 
+bool has_measures(const OutputFeature& feature) {
+    return !feature.line.empty() && feature.z.size() == feature.line.size() && feature.m.size() == feature.line.size();
+}
+
 std::unique_ptr<OGRGeometry> to_geometry(const OutputFeature& feature) {
     if (!feature.polygon.empty()) {
         auto all = std::make_unique<OGRMultiPolygon>();
@@ -42,6 +46,12 @@ std::unique_ptr<OGRGeometry> to_geometry(const OutputFeature& feature) {
     if (feature.line.empty()) return nullptr;
     if (is_point(feature)) return std::make_unique<OGRPoint>(feature.line[0].x, feature.line[0].y);
     auto line = std::make_unique<OGRLineString>();
+    if (has_measures(feature)) {
+        for (std::size_t k = 0; k < feature.line.size(); ++k) {
+            line->addPoint(feature.line[k].x, feature.line[k].y, feature.z[k], feature.m[k]);
+        }
+        return line;
+    }
     for (const PlanPoint& p : feature.line) line->addPoint(p.x, p.y);
     line->flattenTo2D();
     return line;
@@ -52,7 +62,9 @@ OGRwkbGeometryType type_of(const std::vector<OutputFeature>& features) {
     const auto is_line = [](const OutputFeature& f) { return f.polygon.empty() && f.line.size() > 1; };
     if (features.empty()) return wkbUnknown;
     if (std::all_of(features.begin(), features.end(), is_polygon)) return wkbMultiPolygon;
-    if (std::all_of(features.begin(), features.end(), is_line)) return wkbLineString;
+    if (std::all_of(features.begin(), features.end(), is_line)) {
+        return std::all_of(features.begin(), features.end(), has_measures) ? wkbLineStringZM : wkbLineString;
+    }
     if (std::all_of(features.begin(), features.end(), is_point)) return wkbPoint;
     return wkbUnknown;
 }

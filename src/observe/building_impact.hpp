@@ -56,6 +56,10 @@ class ImpactRecorder {
     /// nullptr: not a barrier, or a failed one.
     [[nodiscard]] const Overtopping* overtopping(std::size_t building) const { return crossings_[building].get(); }
 
+    /// Of the same structures.
+    template <class Archive>
+    void keep(Archive& archive);
+
   private:
     static constexpr std::size_t no_slot = static_cast<std::size_t>(-1);
     struct Record {
@@ -94,5 +98,16 @@ class ImpactRecorder {
     std::vector<Copied<Overtopping>> crossings_;  // by building
     bool jumped_ = false;                         // particles were moved since the last step
 };
+
+template <class Archive>
+void ImpactRecorder::keep(Archive& archive) {
+    archive(patches_, sums_, slot_building_, impacts_, records_, touched_, failed_, jumped_);
+    for (auto& crossings : crossings_) {
+        bool stands = crossings != nullptr;
+        archive(stands);
+        if (!stands) crossings.reset();
+        if (crossings) archive(*crossings);
+    }
+}
 
 }  // namespace talus::observe

@@ -20,6 +20,11 @@ class EnergyAccount {
     /// Every row of the time series. `present`: mass of the debris whose energies it has, kg; `density`, kg/m3.
     void add(const TimeSample& row, double present, double density);
 
+    template <class Archive>
+    void keep(Archive& archive) {
+        archive(highest_, thickness_, brought_, brought_mass_, total_, entrained_, mean_height_, gained_, gained_time_);
+    }
+
     /// m/s, the greatest speed that a fall to the level explains.
     [[nodiscard]] double greatest_speed() const;
 

@@ -77,6 +77,13 @@ class FrontTracker {
     /// Arrivals by chainage, with velocities.
     [[nodiscard]] std::vector<FrontSample> samples() const { return record_.samples(); }
 
+    /// Of the same flow path.
+    template <class Archive>
+    void keep(Archive& archive) {
+        archive(front_count_, held_, current_, farthest_, candidates_.found, candidates_.held, record_.arrival,
+                record_.head);
+    }
+
   private:
     /// Sets current_ and the candidates.
     void find_front(const sim::Ground& ground, const Debris& debris);

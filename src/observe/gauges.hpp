@@ -21,6 +21,14 @@ class GaugeRecorder {
     }
     [[nodiscard]] const std::vector<GaugeRecord>& records() const { return records_; }
 
+    /// The records of the same gauges.
+    template <class Archive>
+    void keep(Archive& archive) {
+        for (GaugeRecord& r : records_) {
+            archive(r.arrival_time, r.peak_depth, r.peak_depth_time, r.peak_speed, r.peak_speed_time, r.rows);
+        }
+    }
+
   private:
     void take(GaugeRecord& record, double time, bool row, const FlowAt& now) const;
 

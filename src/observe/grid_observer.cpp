@@ -114,6 +114,17 @@ void GridObserver::watch(const depth::Solver& solver, const std::vector<terrain:
     read_gauges(solver, true);
 }
 
+void GridObserver::watch(const depth::Solver& solver, const terrain::Terrain& terrain,
+                         const std::vector<terrain::CrossSection>& sections) {
+    sections_ = GridSections(solver, terrain, sections, structures_.faces().size());
+}
+
+std::vector<depth::Face> GridObserver::faces() const {
+    std::vector<depth::Face> all = structures_.faces();
+    all.insert(all.end(), sections_.faces().begin(), sections_.faces().end());
+    return all;
+}
+
 void GridObserver::read_gauges(const depth::Solver& solver, bool row) {
     const GridGeometry& g = solver.geometry();
     gauges_.after_step(solver.time(), row, [&](const PlanPoint& place) -> FlowAt {
@@ -182,6 +193,7 @@ void GridObserver::after_step(const depth::Solver& solver, double held, double s
     measure_cells(solver);
     const bool row = solver.time() >= timeseries_.back().time + outputs_.sample_interval - 1e-9;
     structures_.after_step(solver, row);
+    sections_.after_step(solver);
     read_gauges(solver, row);
     if (!row) return;
     const GridGeometry& g = solver.geometry();
@@ -396,6 +408,7 @@ Observation GridObserver::finish(const depth::Solver& solver, const sim::Ground&
     if (o.timeseries.back().time < solver.time())
         o.timeseries.push_back(sample(solver, held, timeseries_.back().steps_per_second));
     o.gauges = gauges_.records();
+    o.cross_sections = sections_.records(solver.time());
     o.buildings = structures_.impacts(solver);
     o.volume_released = volume_released_ + held;
     o.erosion = measure_erosion(ground, flow_path_, outputs_.chainage_interval);

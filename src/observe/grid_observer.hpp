@@ -5,6 +5,7 @@
 
 #include "core/grid.hpp"
 #include "depth/solver.hpp"
+#include "observe/discharge.hpp"
 #include "observe/energy.hpp"
 #include "observe/front_tracker.hpp"
 #include "observe/gauges.hpp"
@@ -32,6 +33,11 @@ class GridObserver {
     void note_entrainment(double volume) { volume_entrained_ += volume; }
     /// Records the flow at these places from now on.
     void watch(const depth::Solver& solver, const std::vector<terrain::Gauge>& gauges);
+    /// Records what passes these lines from now on.
+    void watch(const depth::Solver& solver, const terrain::Terrain& terrain,
+               const std::vector<terrain::CrossSection>& sections);
+    /// What the solver must count for it (Solver::watch), once all that is watched is known.
+    [[nodiscard]] std::vector<depth::Face> faces() const;
     /// `held`: volume in releases that are still to start, m3.
     void after_step(const depth::Solver& solver, double held, double steps_per_second);
 
@@ -75,6 +81,7 @@ class GridObserver {
     std::vector<float> chainage_;                         ///< by cell; NaN: not on the path
     GridStructures structures_;
     GaugeRecorder gauges_;
+    GridSections sections_;
     EnergyAccount energy_;
     std::vector<TimeSample> timeseries_;
     double volume_released_ = 0, volume_entrained_ = 0, front_ = never;

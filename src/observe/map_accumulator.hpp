@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <memory>
@@ -75,6 +76,10 @@ class MapAccumulator {
     /// Debris thinner than this does not count as having reached a cell, m: a tenth of a layer of particles. Without
     /// it, the edge of a single particle's share would set the peak speed of cells that the particle never entered.
     [[nodiscard]] double thinnest_depth() const { return scale_.thinnest_depth; }
+
+    /// Of the same map.
+    template <class Archive>
+    void keep(Archive& archive);
 
   private:
     static constexpr unsigned tile_size = map_tile_size;
@@ -155,5 +160,40 @@ class MapAccumulator {
     mutable bool device_is_newer_ = false;  // than the tiles
     bool device_is_older_ = true;
 };
+
+template <class Archive>
+void MapAccumulator::keep(Archive& archive) {
+    read_back();
+    device_is_older_ = true;
+    std::size_t count = tiles_.size();
+    archive(scale_, adds_, count);
+    if constexpr (Archive::reading) {
+        active_count_ = 0;
+    } else {  // threads made them in any order
+        std::sort(tiles_.begin(), tiles_.end(), [](const auto& a, const auto& b) {
+            return a->row != b->row ? a->row < b->row : a->column < b->column;
+        });
+    }
+    for (std::size_t k = 0; k < count; ++k) {
+        unsigned column = 0, row = 0;  // in tiles
+        if constexpr (!Archive::reading) {
+            column = static_cast<unsigned>(tiles_[k]->column + 1) / tile_size;
+            row = static_cast<unsigned>(tiles_[k]->row + 1) / tile_size;
+        }
+        archive(column, row);
+        if constexpr (Archive::reading) {
+            const bool on_map = column < tile_columns_ && std::size_t{row} * tile_columns_ + column < tile_at_.size();
+            if (!on_map || archive.failed()) return archive.fail();
+        }
+        Tile& tile = tile_at(column, row);
+        archive(tile.added, tile.sums, tile.peak_depth, tile.peak_speed, tile.arrival_time, tile.arrival_speed,
+                tile.peak_pressure, tile.density);
+        if constexpr (Archive::reading) {
+            if (tile.added != adds_) continue;
+            active_.resize(std::max<std::size_t>(active_.size(), active_count_ + 1));
+            active_[active_count_++] = &tile;
+        }
+    }
+}
 
 }  // namespace talus::observe

@@ -31,6 +31,11 @@ class MovingSums {
     /// Sets `count` slots starting at `first` to zero.
     void clear(std::size_t first, std::size_t count);
 
+    template <class Archive>
+    void keep(Archive& archive) {
+        archive(slots_, arrivals_, entries_, first_, adding_, added_);
+    }
+
   private:
     struct Slot {
         double sum = 0, step = 0;   // within the window; of the current step

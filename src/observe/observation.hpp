@@ -9,6 +9,7 @@
 #include "core/geometry.hpp"
 #include "core/grid.hpp"
 #include "params/spec.hpp"
+#include "terrain/cross_section.hpp"
 #include "terrain/flow_path.hpp"
 #include "terrain/gauge.hpp"
 #include "terrain/terrain.hpp"
@@ -88,6 +89,14 @@ struct BuildingImpact {
     double peak_filling_height = 0;         ///< m, mean depth along the face where it was deepest, of the samples
 
     std::vector<StructureSample> history{};  ///< from the first hit on, at the times of the time series
+
+    template <class Archive>
+    void keep(Archive& archive) {
+        archive(name, hit, first_hit_time, peak_force, peak_impact_pressure, peak_depth, peak_dynamic_pressure,
+                peak_speed, removed_time, impulse, failure_time, is_barrier, passing_share, overtopped_volume,
+                first_overtopping_time, passed_volume, retained_volume, peak_retained_volume, peak_filling_height,
+                history);
+    }
 };
 
 /// "building", "barrier" or "net".
@@ -147,6 +156,20 @@ struct GaugeRecord {
     double peak_depth = 0, peak_depth_time = never;  ///< m, s, of all steps
     double peak_speed = 0, peak_speed_time = never;  ///< m/s, s
     std::vector<GaugeSample> rows{};                 ///< at the times of the time series
+};
+
+struct DischargeSample {
+    double time = 0;       ///< s, end of an interval
+    double discharge = 0;  ///< m3/s, mean over it
+    double passed = 0;     ///< m3, until then
+};
+
+/// What passed a cross-section, from its left to its right less what came back.
+struct DischargeRecord {
+    terrain::CrossSection section;
+    double passed = 0;                             ///< m3
+    double peak_discharge = 0, peak_time = never;  ///< m3/s, of the row with the greatest, in either direction; s
+    std::vector<DischargeSample> rows{};
 };
 
 /// Erosion of the bed by debris.
@@ -219,6 +242,7 @@ struct Observation {
     std::vector<BuildingImpact> buildings;  ///< as in Ground::buildings
     std::vector<TimeSample> timeseries;
     std::vector<GaugeRecord> gauges;
+    std::vector<DischargeRecord> cross_sections;
     double volume_released = 0;  ///< m3, less the removed volume
     Compression compression;
     /// Share of the volume that rounding may gain or lose: depths in single precision do, whole particles do not.

@@ -7,6 +7,7 @@
 #include "observe/building_impact.hpp"
 #include "observe/debris.hpp"
 #include "observe/device/particles.hpp"
+#include "observe/discharge.hpp"
 #include "observe/energy.hpp"
 #include "observe/erosion.hpp"
 #include "observe/front_tracker.hpp"
@@ -151,6 +152,7 @@ struct Observer::Parts {
         debris.add_to(maps);
         front.after_step(ground, debris);
         impact.after_step(model, ground, debris);
+        sections.after_step(debris);
         const sim::StateSummary& state = debris.summary();
         watch_compression(model, state);
         steps_per_second = rate_now;
@@ -169,10 +171,19 @@ struct Observer::Parts {
         gauges.after_step(time, row, [&](const PlanPoint& place) { return maps.at(place); });
     }
 
+    template <class Archive>
+    void keep(Archive& archive) {
+        archive(maps, gauges, sections, front, impact, energy, released, start, injected, timeseries, next_row,
+                compression.worst_mean, compression.worst_max, compression.worst_overcompressed_share,
+                compression.worst_mean_time, compression.worst_max_time, compression.worst_overcompressed_time,
+                compressed_time, iterated_time, iterations, steps);
+    }
+
     params::OutputSpec outputs;
     OnDevice on_device;
     MapAccumulator maps;
     GaugeRecorder gauges;
+    ParticleSections sections;
     FrontTracker front;
     ImpactRecorder impact;
     EnergyAccount energy;
@@ -231,6 +242,7 @@ void Observer::follow(const sim::Model& model, const sim::Ground& ground, const 
     p.maps.add(state);
     p.front.follow(state);
     p.impact.follow(model, ground, state);
+    p.sections.forget_places();
     if (p.on_device.particles) p.on_device.particles->forget_walls();
 }
 
@@ -255,6 +267,11 @@ void Observer::watch(const std::vector<terrain::Gauge>& gauges) {
     parts_->read_gauges(parts_->timeseries.back().time, true);
 }
 
+void Observer::watch(const sim::Model& model, const sim::Ground& ground, const sim::State& state,
+                     const std::vector<terrain::CrossSection>& sections) {
+    parts_->sections = ParticleSections(model, ground.terrain, sections, state);
+}
+
 void Observer::expect(std::uint32_t particles) {
     parts_->start.reserve(particles);
     parts_->maps.make_room(particles);
@@ -269,6 +286,16 @@ void Observer::forget_building(const sim::Model& model, const sim::Ground& groun
 
 const std::vector<std::size_t>& Observer::failed_buildings() const {
     return parts_->impact.failed();
+}
+
+void Observer::save(ArchiveWriter& archive) {
+    archive(*parts_);
+}
+
+void Observer::restore(ArchiveReader& archive) {
+    archive(*parts_);
+    if (parts_->timeseries.empty()) archive.fail();  // it has a row from the beginning on
+    if (parts_->on_device) parts_->on_device->forget_walls();
 }
 
 const Overtopping* Observer::overtopping(std::size_t building) const {
@@ -341,6 +368,7 @@ Observation Observer::finish(const sim::Model& model, const sim::Ground& ground,
     observation.buildings = p.impact.complete(state);
     observation.timeseries = p.timeseries;
     observation.gauges = p.gauges.records();
+    observation.cross_sections = p.sections.records(state.time);
     if (p.timeseries.back().time < state.time) observation.timeseries.push_back(now);
     observation.erosion = measure_erosion(ground, p.front.flow_path(), p.outputs.chainage_interval);
     observation.volume_released = state.released() * model.particle_volume();

@@ -5,6 +5,7 @@
 #include <memory>
 #include <vector>
 
+#include "core/archive.hpp"
 #include "observe/map_accumulator.hpp"
 #include "observe/observation.hpp"
 #include "observe/overtopping.hpp"
@@ -46,11 +47,18 @@ class Observer final : public sim::StepWatcher {
                 std::uint32_t first_new_id);
     /// Records the flow at these places from now on.
     void watch(const std::vector<terrain::Gauge>& gauges);
+    /// Records what passes these lines from now on.
+    void watch(const sim::Model& model, const sim::Ground& ground, const sim::State& state,
+               const std::vector<terrain::CrossSection>& sections);
     /// Reserves memory for this number of particles, so that injecting them allocates nothing.
     void expect(std::uint32_t particles);
     /// Resets the record of a building, for example after it was moved.
     void forget_building(const sim::Model& model, const sim::Ground& ground, const sim::State& state,
                          std::size_t building);
+
+    /// What has been measured so far: an observer made of the same scene that reads it goes on as this one.
+    void save(ArchiveWriter& archive);
+    void restore(ArchiveReader& archive);
 
     /// Debris that has crossed a barrier's line; nullptr: not a barrier, or a failed one.
     [[nodiscard]] const Overtopping* overtopping(std::size_t building) const;

@@ -41,6 +41,12 @@ class Overtopping {
     };
     [[nodiscard]] Filling filling(const Debris& debris) const;
 
+    /// The crossings of the same line so far.
+    template <class Archive>
+    void keep(Archive& archive) {
+        archive(tracks_, over_, through_, first_time_, calls_);
+    }
+
   private:
     struct Point {
         float x, y;

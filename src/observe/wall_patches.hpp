@@ -74,6 +74,11 @@ class WallPatches {
                overlap(2 * length - middle - from, size, width);
     }
 
+    template <class Archive>
+    void keep(Archive& archive) {
+        archive(edge_, columns_, patches_, bins_);
+    }
+
   private:
     void add_walls(const terrain::Terrain& terrain, const terrain::Building& of, const Ring& ring, bool hole,
                    double clearance, double roof, int building);

@@ -213,6 +213,7 @@ class Declaration {
 
 /// What is recorded at places, and particles in one area only.
 [[nodiscard]] Section declare_gauge();
+[[nodiscard]] Section declare_cross_section();
 [[nodiscard]] Section declare_zoom();
 
 /// The sections of field observations.

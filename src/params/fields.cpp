@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "params/contours.hpp"
 #include "params/declaration.hpp"
 #include "params/time_step.hpp"
 
@@ -238,7 +239,15 @@ Section declare_outputs() {
              "Swiss recommendation (BWW, BRP & BUWAL 1997), or debris flows after García et al. (2003).");
     s.key("peak_thickness", "", &OutputSpec::peak_thickness, anything(),
           "Also writes peak_thickness.tif, the peak depth normal to the slope.");
+    s.key("contours", "", &OutputSpec::contours, anything(),
+          fmt::format("Contours that are also written, of each map \"map=value,value\", in the unit of its file: {}.",
+                      fmt::join(contour_maps, ", ")));
+    s.key("tracks", "", &OutputSpec::tracks, between(0, 1e6),
+          "Particles whose ways are also written, evenly chosen, at outputs.series_interval_s; 0: none.");
     s.rule([](const OutputSpec& outputs, const SceneSpec&, double) -> std::optional<Violation> {
+        if (const auto contours = contours_of(outputs.contours); !contours) {
+            return Violation{"contours", ": " + contours.error().message};
+        }
         for (const std::string& format : outputs.series) {
             if (std::find(series_formats.begin(), series_formats.end(), format) != series_formats.end()) continue;
             return Violation{"series", fmt::format(": \"{}\" is refused; each must be one of \"{}\"", format,
@@ -274,11 +283,12 @@ Section declare_variant() {
 
 const std::vector<Section>& scene_sections() {
     static const std::vector<Section> sections = [] {
-        std::vector<Section> all = {
-            declare_scene(),           declare_report(),    declare_terrain(),   declare_release(),
-            declare_inflow(),          declare_bed(),       declare_buildings(), declare_barrier(),
-            declare_barrier_opening(), declare_flow_path(), declare_material(),  declare_zone(),
-            declare_solver(),          declare_outputs(),   declare_gauge(),     declare_zoom()};
+        std::vector<Section> all = {declare_scene(),         declare_report(),   declare_terrain(),
+                                    declare_release(),       declare_inflow(),   declare_bed(),
+                                    declare_buildings(),     declare_barrier(),  declare_barrier_opening(),
+                                    declare_flow_path(),     declare_material(), declare_zone(),
+                                    declare_solver(),        declare_outputs(),  declare_gauge(),
+                                    declare_cross_section(), declare_zoom()};
         for (Section& section : declare_observations()) all.push_back(std::move(section));
         all.push_back(declare_variant());
         all.push_back(declare_trigger());

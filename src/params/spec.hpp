@@ -294,7 +294,9 @@ struct OutputSpec {
     double series_interval = 1;          ///< s between its frames
     std::optional<double> geoid_height;  ///< m, of the zero of the terrain's heights above the ellipsoid of WGS 84
     GuidelineChoice intensity_guideline = GuidelineChoice::swiss_debris_flow;
-    bool peak_thickness = false;  ///< also a map of the peak thickness normal to the slope
+    std::vector<std::string> contours;  ///< "map=value,value": of these maps as lines, see contours_of()
+    int tracks = 0;                     ///< particles whose ways are written
+    bool peak_thickness = false;        ///< also a map of the peak thickness normal to the slope
 };
 
 /// `[[gauge]]`: a place where depth and speed are recorded over time; at a place, or at a chainage.
@@ -302,6 +304,14 @@ struct GaugeSpec {
     std::string name;
     std::optional<double> x = {}, y = {};  ///< m, in the terrain's reference system
     std::optional<double> chainage = {};   ///< m along the flow path
+};
+
+/// `[[cross_section]]`: a line across which discharge is recorded over time; its places, or a file.
+struct CrossSectionSpec {
+    std::string name;
+    std::vector<PlanPoint> line;  ///< two places or more, in the terrain's reference system
+    std::string file, layer;
+    double interval = 1;  ///< s, over which discharge is averaged
 };
 
 /// `[zoom]`: the depth-averaged model runs the event, particles what crosses the boundary of an area. No area: no zoom.
@@ -459,6 +469,7 @@ struct SceneSpec {
     SolverSpec solver;
     OutputSpec outputs;
     std::vector<GaugeSpec> gauges;
+    std::vector<CrossSectionSpec> cross_sections;
     ZoomSpec zoom;
     std::vector<ObservationSpec> observations;
     std::vector<SuperelevationSpec> superelevations;

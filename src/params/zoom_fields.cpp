@@ -1,4 +1,4 @@
-// Gauges, and the zoom of the depth-averaged model into particles.
+// Gauges, cross-sections, and the zoom of the depth-averaged model into particles.
 #include <fmt/format.h>
 
 #include "params/declaration.hpp"
@@ -23,6 +23,25 @@ Section declare_gauge() {
         return gauge.x ? Violation{"y_m", ": missing; x_m needs it"}
                        : Violation{"y_m", ": is refused without x_m, beside chainage_m"};
     });
+    return s.take();
+}
+
+Section declare_cross_section() {
+    Declaration<CrossSectionSpec> s("cross_section",
+                                    "A line across which the discharge of debris is recorded over time, with both "
+                                    "models; any number. What passes from its left to its right is positive, seen from "
+                                    "its first place to its last.",
+                                    &SceneSpec::cross_sections);
+    s.text("name", &CrossSectionSpec::name, "\"section N\"", "Name in reports and tables.");
+    s.key("line_m", "m", &CrossSectionSpec::line, anything(),
+          "Places along the line in plan, two or more, in the terrain's reference system.");
+    s.path("file", &CrossSectionSpec::file, "line_m is given",
+           "The line in a file, or several, each a cross-section named by its attribute \"name\": GeoJSON, GeoPackage, "
+           "Shapefile.");
+    s.text("layer", &CrossSectionSpec::layer, "the only layer", "Layer of file.");
+    s.key("interval_s", "s", &CrossSectionSpec::interval, between(0.01, 1e6),
+          "Simulated time over which discharge is averaged, between rows of discharge.csv.");
+    s.exactly_one_of({"line_m", "file"});
     return s.take();
 }
 

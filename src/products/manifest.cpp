@@ -135,6 +135,17 @@ Json gauges_json(const observe::Observation& observation) {
     return all;
 }
 
+Json cross_sections_json(const observe::Observation& observation) {
+    Json all = Json::array();
+    for (const observe::DischargeRecord& r : observation.cross_sections) {
+        all.push_back({{"name", r.section.name},
+                       {"peak_discharge_m3ps", r.peak_discharge},
+                       {"peak_discharge_time_s", r.peak_time},
+                       {"passed_m3", r.passed}});
+    }
+    return all;
+}
+
 Json zoom_json(const run::RunResult& result) {
     if (!result.zoom) return nullptr;
     const run::ZoomRecord& zoom = *result.zoom;
@@ -185,6 +196,7 @@ Json results(const run::RunResult& result) {
             {"barriers_hit", barriers.hit},
             {"structures", structures_json(o)},
             {"gauges", gauges_json(o)},
+            {"cross_sections", cross_sections_json(o)},
             {"zoom", zoom_json(result)},
             {"compression", result.depth_averaged() ? Json() : compression_json(o)}};
 }

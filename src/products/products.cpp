@@ -37,7 +37,7 @@ Status write_report(const scene::Scene& scene, const run::RunResult& result,
 
 Status write_products(const scene::Scene& scene, const run::RunResult& result, const std::filesystem::path& folder,
                       const std::vector<run::Comparison>& comparisons, std::string_view changed,
-                      const std::vector<double>& frame_times) {
+                      const std::vector<double>& frame_times, std::vector<std::string>* missing) {
     TALUS_TRY(write_partial_note(result, folder));
     if (result.fault) TALUS_TRY(write_fault(*result.fault, folder / "fault"));
     LayerDefinition layers(title_of(scene, result), scene.crs.wkt);
@@ -45,7 +45,7 @@ Status write_products(const scene::Scene& scene, const run::RunResult& result, c
     TALUS_TRY(write_terrain(scene, result.observation.maps.peak_depth.geometry.extent(), folder, layers));
     add_maps_over_time(scene, result, frame_times, layers);
     TALUS_TRY(write_tables(scene, result, folder, changed));
-    TALUS_TRY(write_vectors(scene, result, folder, layers));
+    TALUS_TRY(write_vectors(scene, result, folder, layers, missing));
     TALUS_TRY(layers.write(folder));
     TALUS_TRY(write_kml(scene, result, folder));
     TALUS_TRY(write_comparisons(comparisons, result, folder));

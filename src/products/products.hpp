@@ -44,10 +44,13 @@ class OutputFolder {
 /// results.json, report.html; where there are comparisons with variants of the scene, convergence.csv and variants.csv
 /// too; PARTIAL.txt where the run did not end by itself, and the folder fault where a step could not be trusted. Errors
 /// name the file and the cause (disk full, ...). `changed`: what was changed during the run, which the tables then say
-/// in a last column; empty: nothing. `frame_times`: of the maps over time that are in the folder's series, s.
+/// in a last column; empty: nothing. `frame_times`: of the maps over time that are in the folder's series, s. Contours
+/// are written only where the scene asks for them; why some are missing is added to `missing`, and is an error without
+/// that.
 [[nodiscard]] Status write_products(const scene::Scene& scene, const run::RunResult& result,
                                     const std::filesystem::path& folder,
                                     const std::vector<run::Comparison>& comparisons = {}, std::string_view changed = {},
-                                    const std::vector<double>& frame_times = {});
+                                    const std::vector<double>& frame_times = {},
+                                    std::vector<std::string>* missing = nullptr);
 
 }  // namespace talus::products

@@ -1,6 +1,7 @@
 #include "products/series.hpp"
 
 #include <algorithm>
+#include <array>
 #include <string>
 #include <system_error>
 #include <utility>
@@ -14,6 +15,19 @@
 
 namespace talus::products {
 namespace {
+
+/// What a format writes.
+struct SeriesFiles {
+    std::string_view format;
+    std::array<std::string_view, 3> files;
+};
+/// In the order in which they are written.
+constexpr std::array<SeriesFiles, 6> series_files = {{{"geotiff", {"depth.tif", "speed.tif", "pressure.tif"}},
+                                                      {"netcdf", {"maps.nc"}},
+                                                      {"gltf", {"run.glb"}},
+                                                      {"3dtiles", {"tileset.json", "run.glb"}},
+                                                      {"usd", {"run.usda"}},
+                                                      {"paraview", {"paraview"}}}};
 
 /// Elevations at the centres of the cells; NaN: unknown.
 Grid<float> terrain_on(const GridGeometry& geometry, const terrain::Terrain& terrain) {
@@ -60,42 +74,65 @@ Status Series::add(const run::Frame& frame) {
     return frames_->add(frame, scene_.spec.material.rest_density);
 }
 
-Status Series::finish(const run::RunResult& result) {
+std::vector<std::string> Series::finish(const run::RunResult& result) {
     if (!frames_) return {};
-    if (particles_) TALUS_TRY(particles_->finish());
-    TALUS_TRY(write_maps(result));
-    TALUS_TRY(write_views(result));
+    std::vector<std::string> missing;
+    std::optional<DebrisSurface> surface;
+    std::string no_surface;
+    if (wants("gltf") || wants("3dtiles") || wants("usd") || wants("paraview")) {
+        auto made = DebrisSurface::make(scene_.terrain, result.observation.maps.peak_depth, *frames_);
+        if (made) {
+            surface.emplace(std::move(*made));
+        } else {
+            no_surface = made.error().message;
+        }
+    }
+    for (const SeriesFiles& one : series_files) {
+        if (!wants(one.format)) continue;
+        const bool drawn = one.format != "netcdf" && one.format != "geotiff";
+        const Status written = drawn && !surface ? Status(Error{no_surface})
+                                                 : write_format(one.format, result, surface ? &*surface : nullptr);
+        if (written) continue;
+        missing.push_back(written.error().message);
+        for (const std::string_view name : one.files) {
+            const bool shared = name == "run.glb" && one.format == "3dtiles" && wants("gltf");
+            std::error_code ignored;
+            if (!name.empty() && !shared) std::filesystem::remove_all(folder_ / name, ignored);
+        }
+    }
     points_.reset();
     times_ = frames_->times();
     frames_.reset();
-    return {};
+    return missing;
 }
 
-Status Series::write_maps(const run::RunResult& result) const {
-    if (!wants("geotiff") && !wants("netcdf")) return {};
+Status Series::write_format(std::string_view format, const run::RunResult& result, const DebrisSurface* surface) {
+    if (surface == nullptr) return write_maps(result, format == "netcdf");
+    const View view{scene_, result, *surface, frames_->times()};
+    if (format == "netcdf" || format == "geotiff") return write_maps(result, format == "netcdf");
+    if (format == "gltf") return write_glb(view, folder_ / "run.glb");
+    if (format == "3dtiles") {
+        if (!wants("gltf")) TALUS_TRY(write_glb(view, folder_ / "run.glb"));
+        return write_tileset(view, folder_ / "tileset.json", "run.glb");
+    }
+    if (format == "usd") return write_usda(view, points_ ? &*points_ : nullptr, folder_ / "run.usda");
+    if (particles_) TALUS_TRY(particles_->finish());
+    return write_paraview_view(view, folder_ / "paraview", final_folder_ / "paraview");
+}
+
+Status Series::write_maps(const run::RunResult& result, bool netcdf) const {
     const GridGeometry& grid = result.observation.maps.peak_depth.geometry;
     std::vector<geo::RasterSeries> quantities;
     for (std::size_t k = 0; k < series_quantities.size(); ++k) quantities.push_back(quantity_of(*frames_, k, grid));
     geo::SeriesFile file{grid, frames_->times(), scene_.crs, origin_of(scene_, result)};
-    if (wants("geotiff")) {
-        for (const geo::RasterSeries& quantity : quantities) {
-            TALUS_TRY(write_cog_series((folder_ / (quantity.name + ".tif")).string(), file, quantity));
-        }
+    if (netcdf) {
+        file.metadata = plain_origin_of(scene_, result);
+        return write_netcdf_series((folder_ / "maps.nc").string(), file, terrain_on(grid, scene_.terrain), quantities);
     }
-    if (!wants("netcdf")) return {};
-    file.metadata = plain_origin_of(scene_, result);
-    return write_netcdf_series((folder_ / "maps.nc").string(), file, terrain_on(grid, scene_.terrain), quantities);
-}
-
-Status Series::write_views(const run::RunResult& result) const {
-    if (!wants("gltf") && !wants("3dtiles") && !wants("usd") && !wants("paraview")) return {};
-    TALUS_ASSIGN(const DebrisSurface surface,
-                 DebrisSurface::make(scene_.terrain, result.observation.maps.peak_depth, *frames_));
-    const View view{scene_, result, surface, frames_->times()};
-    if (wants("gltf") || wants("3dtiles")) TALUS_TRY(write_glb(view, folder_ / "run.glb"));
-    if (wants("3dtiles")) TALUS_TRY(write_tileset(view, folder_ / "tileset.json", "run.glb"));
-    if (wants("usd")) TALUS_TRY(write_usda(view, points_ ? &*points_ : nullptr, folder_ / "run.usda"));
-    return wants("paraview") ? write_paraview_view(view, folder_ / "paraview", final_folder_ / "paraview") : Status();
+    for (const geo::RasterSeries& quantity : quantities) {
+        TALUS_TRY(write_cog_series((folder_ / (quantity.name + ".tif")).string(), file, quantity));
+    }
+    return {};
 }
 
 }  // namespace talus::products

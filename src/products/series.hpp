@@ -2,10 +2,12 @@
 
 #include <filesystem>
 #include <optional>
+#include <string>
 #include <string_view>
 #include <vector>
 
 #include "core/result.hpp"
+#include "products/debris_surface.hpp"
 #include "products/particle_frames.hpp"
 #include "products/particle_series.hpp"
 #include "products/series_frames.hpp"
@@ -26,15 +28,17 @@ class Series {
     [[nodiscard]] static bool wanted(const scene::Scene& scene) { return !scene.spec.outputs.series.empty(); }
 
     [[nodiscard]] Status add(const run::Frame& frame);
-    /// On the cells of the result's maps.
-    [[nodiscard]] Status finish(const run::RunResult& result);
+    /// On the cells of the result's maps. Returns why a format is missing, a sentence each; what was half-written of it
+    /// is deleted, the others are there.
+    [[nodiscard]] std::vector<std::string> finish(const run::RunResult& result);
     /// Of the frames, s; known once it has finished.
     [[nodiscard]] const std::vector<double>& times() const { return times_; }
 
   private:
     [[nodiscard]] bool wants(std::string_view format) const;
-    [[nodiscard]] Status write_maps(const run::RunResult& result) const;
-    [[nodiscard]] Status write_views(const run::RunResult& result) const;
+    [[nodiscard]] Status write_format(std::string_view format, const run::RunResult& result,
+                                      const DebrisSurface* surface);
+    [[nodiscard]] Status write_maps(const run::RunResult& result, bool netcdf) const;
 
     const scene::Scene& scene_;
     std::filesystem::path folder_, final_folder_;

@@ -122,6 +122,17 @@ std::string gauge_table(const observe::Observation& observation, std::string_vie
     return csv.text();
 }
 
+std::string discharge_table(const observe::Observation& observation, std::string_view changed) {
+    Csv csv("name,time_s,discharge_m3ps,passed_m3", changed);
+    for (const observe::DischargeRecord& record : observation.cross_sections) {
+        for (const observe::DischargeSample& s : record.rows) {
+            csv.word(record.section.name).number(s.time).number(s.discharge).number(s.passed);
+            csv.end_row();
+        }
+    }
+    return csv.text();
+}
+
 }  // namespace
 
 Status write_tables(const scene::Scene& scene, const run::RunResult& result, const std::filesystem::path& folder,
@@ -135,6 +146,9 @@ Status write_tables(const scene::Scene& scene, const run::RunResult& result, con
     }
     if (!observation.gauges.empty()) {
         TALUS_TRY(write_text_file(folder / "gauges.csv", gauge_table(observation, changed)));
+    }
+    if (!observation.cross_sections.empty()) {
+        TALUS_TRY(write_text_file(folder / "discharge.csv", discharge_table(observation, changed)));
     }
     TALUS_TRY(write_text_file(folder / "structures_over_time.csv", structure_table(observation, changed)));
     return write_text_file(folder / "timeseries.csv", time_table(observation, changed));

@@ -198,6 +198,16 @@ Status write_gauges(const observe::Observation& observation, Tables& tables) {
                         features);
 }
 
+/// A line per cross-section.
+Status write_cross_sections(const observe::Observation& observation, Tables& tables) {
+    std::vector<geo::OutputFeature> features;
+    for (const observe::DischargeRecord& r : observation.cross_sections) {
+        features.push_back({{}, r.section.line, {r.section.name, r.peak_discharge, r.peak_time, r.passed}});
+    }
+    return tables.write("cross_sections",
+                        {{"name", true}, {"peak_discharge_m3ps"}, {"peak_discharge_time_s"}, {"passed_m3"}}, features);
+}
+
 Status write_zoom(const run::ZoomRecord& zoom, Tables& tables) {
     return tables.write("zoom", {{"around", true}, {"volume_in_m3"}, {"particle_spacing_m"}},
                         {{{zoom.area}, {}, {zoom.around, zoom.brought_volume, zoom.particle_spacing}}});
@@ -229,6 +239,10 @@ std::vector<DrawnLayer> drawn_layers(const scene::Scene& scene, const run::RunRe
         const VectorSymbol gauge{blue, {255, 255, 255}, 255, 0.3, Kind::point};
         layers.push_back({"gauges", "Gauges", true, qgis_vector_style(gauge, "name")});
     }
+    if (!result.observation.cross_sections.empty()) {
+        const VectorSymbol section{{}, red, 255, 0.6, Kind::line};
+        layers.push_back({"cross_sections", "Cross-sections", true, qgis_vector_style(section, "name")});
+    }
     if (result.zoom) {
         const VectorSymbol boundary{red, red, 0, 0.5};
         layers.push_back({"zoom", "Boundary of the zoom", true, qgis_vector_style(boundary)});
@@ -250,7 +264,7 @@ std::vector<DrawnLayer> drawn_layers(const scene::Scene& scene, const run::RunRe
 }  // namespace
 
 Status write_vectors(const scene::Scene& scene, const run::RunResult& result, const std::filesystem::path& folder,
-                     LayerDefinition& layers) {
+                     LayerDefinition& layers, std::vector<std::string>* missing) {
     Tables tables((folder / "results.gpkg").string(), scene.crs);
     const observe::Observation& observation = result.observation;
     TALUS_TRY(write_buildings(scene, observation, tables));
@@ -260,6 +274,7 @@ Status write_vectors(const scene::Scene& scene, const run::RunResult& result, co
     TALUS_TRY(write_outline(observation.maps.peak_depth, least, "inundation", tables));
     TALUS_TRY(write_outline(observation.maps.deposit_depth, least, "deposit", tables));
     if (!observation.gauges.empty()) TALUS_TRY(write_gauges(observation, tables));
+    if (!observation.cross_sections.empty()) TALUS_TRY(write_cross_sections(observation, tables));
     if (result.zoom) TALUS_TRY(write_zoom(*result.zoom, tables));
     if (!scene.flow_path.empty()) {
         const geo::OutputFeature line{
@@ -268,7 +283,16 @@ Status write_vectors(const scene::Scene& scene, const run::RunResult& result, co
         TALUS_TRY(tables.write("chainage", {{"chainage_m"}, {"first_arrival_time_s"}, {"front_velocity_mps"}},
                                chainage_marks(scene, observation)));
     }
+    std::vector<WrittenLayer> contours;
+    if (Status drawn = write_contours(scene, result, tables.file(), contours); !drawn) {
+        if (missing == nullptr) return drawn;
+        missing->push_back(drawn.error().message);
+    }
     std::vector<geo::LayerStyle> styles;
+    for (const WrittenLayer& layer : contours) {
+        styles.push_back({layer.table, layer.style});
+        layers.add_vector(layer.title, "results.gpkg", layer.table, layer.style, true);
+    }
     for (const DrawnLayer& layer : drawn_layers(scene, result)) {
         styles.push_back({layer.table, layer.style});
         // A table without features would be a layer in which there is nothing to see.

@@ -30,16 +30,29 @@ namespace talus::products {
 void add_maps_over_time(const scene::Scene& scene, const run::RunResult& result, const std::vector<double>& times,
                         LayerDefinition& layers);
 
-/// front.csv, run_out.csv, buildings.csv, structures_over_time.csv, timeseries.csv, and erosion.csv where there is a
-/// bed. A value that does not exist is an empty field. `changed`: as for write_products.
+/// front.csv, run_out.csv, buildings.csv, structures_over_time.csv, timeseries.csv, and erosion.csv, gauges.csv and
+/// discharge.csv where there is a bed, a gauge or a cross-section. A value that does not exist is an empty field.
+/// `changed`: as for write_products.
 [[nodiscard]] Status write_tables(const scene::Scene& scene, const run::RunResult& result,
                                   const std::filesystem::path& folder, std::string_view changed = {});
 
 /// results.gpkg with the layers buildings, release, intensity (polygons of each class), inundation and deposit
 /// (outlines of what is deeper than outputs.arrival_depth_m), flow_path and chainage (a short line across the path per
-/// mark), gauges and zoom (its boundary) where there are any, and their styles for QGIS. They are added to `layers`.
+/// mark), gauges, cross_sections and zoom (its boundary) where there are any, contours where they are asked for, and
+/// their styles for QGIS. They are added to `layers`. `missing`: as for write_products.
 [[nodiscard]] Status write_vectors(const scene::Scene& scene, const run::RunResult& result,
-                                   const std::filesystem::path& folder, LayerDefinition& layers);
+                                   const std::filesystem::path& folder, LayerDefinition& layers,
+                                   std::vector<std::string>* missing = nullptr);
+
+/// A layer of results.gpkg as QGIS shows it.
+struct WrittenLayer {
+    std::string table, title, style;
+};
+
+/// Adds a layer contours_<map> to results.gpkg for every map of outputs.contours: lines with map, value and unit. Those
+/// that were written are added to `written`, also where another one cannot be.
+[[nodiscard]] Status write_contours(const scene::Scene& scene, const run::RunResult& result, const std::string& file,
+                                    std::vector<WrittenLayer>& written);
 
 /// results.kml, for Google Earth and phones: structures that were hit, with when and how hard, the outline of
 /// inundation and bands of arrival time. None where the reference system is local.

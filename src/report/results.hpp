@@ -64,6 +64,8 @@ struct NamedRun {
 [[nodiscard]] Json fronts_chart(const scene::Scene& scene, const std::vector<NamedRun>& runs);
 /// Depth and speed over time at the gauges of a scene, of one run or several of them. Null: there are none.
 [[nodiscard]] Json gauges(const std::vector<NamedRun>& runs);
+/// Discharge over time through the cross-sections of a scene, of one run or several of them. Null: there are none.
+[[nodiscard]] Json cross_sections(const std::vector<NamedRun>& runs);
 /// What was zoomed, and the balance of volume and momentum across its boundary.
 [[nodiscard]] Json zoom(const run::RunResult& result);
 /// Whether a chainage of the flow path lies outside a zoom. Without a path there is no such place.

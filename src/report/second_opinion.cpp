@@ -209,6 +209,8 @@ Json second_opinion_results(const BothModels& models, const run::SecondOpinion& 
                 {"fronts", fronts_chart(models.scene, {{"particles", &models.particles},
                                                        {"depth-averaged", &models.depth_averaged}})},
                 {"gauges", gauges({{"particles", &models.particles}, {"depth-averaged", &models.depth_averaged}})},
+                {"cross_sections",
+                 cross_sections({{"particles", &models.particles}, {"depth-averaged", &models.depth_averaged}})},
                 {"as_computed",
                  {{"particles", chosen_values(models.scene, models.particles)},
                   {"depth_averaged", chosen_values(models.grid_scene, models.depth_averaged)}}},

@@ -34,11 +34,6 @@ double volume_of(const std::vector<terrain::Release>& releases) {
     return sum;
 }
 
-observe::GridStructures watched_structures(depth::Solver& solver, const scene::Scene& scene, const GridGround& ground) {
-    observe::GridStructures structures(solver, scene.terrain, scene.buildings, ground.structures, scene.spec.outputs);
-    solver.watch(structures.faces());
-    return structures;
-}
 /// Finds how much energy inflows bring.
 class InflowEnergy {
   public:
@@ -107,14 +102,18 @@ class GridRun {
           friction_inside_(solver_,
                            inside == Inside::as_particles ? params::internal_friction_of(scene.spec.material) : 0),
           bed_(grid_bed(scene, ground_)),
-          observer_(solver_, scene.flow_path, scene.spec.outputs, watched_structures(solver_, scene, ground_),
-                    volume_of(scene.releases)),
+          observer_(
+              solver_, scene.flow_path, scene.spec.outputs,
+              observe::GridStructures(solver_, scene.terrain, scene.buildings, ground_.structures, scene.spec.outputs),
+              volume_of(scene.releases)),
           stop_rule_(scene.spec.solver),
           clock_(scene.spec.solver) {
         if (scene.spec.solver.flight) solver_.let_fly();
         held_ = volume_of(scene.releases);
         release_due();
         observer_.watch(solver_, scene.gauges);
+        observer_.watch(solver_, scene.terrain, scene.cross_sections);
+        solver_.watch(observer_.faces());
     }
 
     /// Errors: an inflow that no cell takes.

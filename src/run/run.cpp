@@ -36,7 +36,7 @@ Result<std::unique_ptr<Run>> Run::start(const scene::Scene& scene, std::optional
         TALUS_ASSIGN(sim::State state, seed_releases(model, ground, scene.releases, progress));
         sim::InflowFeeder inflow(model, ground.terrain.frame(), scene.inflows);
         RunStart start{std::move(model), std::move(ground), std::move(state), std::move(inflow),
-                       scene.flow_path,  spec.outputs,      scene.gauges};
+                       scene.flow_path,  spec.outputs,      scene.gauges,     scene.cross_sections};
         if (follows_debris(scene)) start.followed_corridor_width = spec.flow_path.corridor_width;
         return std::make_unique<Run>(std::move(start));
     });
@@ -54,6 +54,7 @@ Run::Run(RunStart start)
       endless_(start.endless),
       smallest_time_step_(std::numeric_limits<double>::infinity()) {
     observer_.watch(start.gauges);
+    observer_.watch(model(), ground(), state(), start.cross_sections);
     observer_.expect(summary().seeded + simulation_.inflow().remaining());
     if (no_debris()) stop(RunPhase::at_rest, no_debris_reason);
 }
@@ -125,6 +126,21 @@ void Run::follow_gauge(std::size_t inflow, const std::vector<params::InflowSampl
     threads_.execute([&] { simulation_.follow_gauge(inflow, hydrograph); });
     observer_.expect(summary().seeded + simulation_.inflow().remaining());
     stop_rule_.reset(summary().time);
+}
+
+void Run::save(ArchiveWriter& archive) {
+    simulation_.save(archive);
+    observer_.save(archive);
+    archive(stop_rule_, phase_, stop_reason_, smallest_time_step_, largest_time_step_);
+}
+
+void Run::restore(ArchiveReader& archive) {
+    threads_.execute([&] { simulation_.restore(archive); });
+    observer_.restore(archive);
+    archive(stop_rule_, phase_, stop_reason_, smallest_time_step_, largest_time_step_);
+    if (archive.failed()) return;
+    observer_.expect(summary().seeded + simulation_.inflow().remaining());
+    if (phase_ == RunPhase::ended) stop(RunPhase::ready, "");
 }
 
 RunStatus Run::status() const {

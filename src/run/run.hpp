@@ -6,6 +6,7 @@
 #include <optional>
 #include <string>
 
+#include "core/archive.hpp"
 #include "core/result.hpp"
 #include "observe/observer.hpp"
 #include "run/fault_record.hpp"
@@ -29,6 +30,7 @@ struct RunStart {
     terrain::FlowPath flow_path = {};  ///< empty: no front against chainage
     params::OutputSpec outputs = {};
     std::vector<terrain::Gauge> gauges = {};
+    std::vector<terrain::CrossSection> cross_sections = {};
     /// Continues at rest, beyond solver.end_time and after a fault: the caller decides when it ends.
     bool endless = false;
     /// m: the flow path is a first guess, and the result is along the path that debris followed. 0: it stays.
@@ -84,6 +86,12 @@ class Run {
     /// Parallel work on the run must use them.
     [[nodiscard]] const Threads& threads() const { return threads_; }
     [[nodiscard]] double wall_time() const { return wall_time_; }  ///< s, of the steps alone
+
+    /// All that its steps have changed, between two of them, for restore() of a run of the same scene, which goes on as
+    /// this one would: the result is that of the run that was not interrupted, to the bit.
+    void save(ArchiveWriter& archive);
+    /// What ended only because of solver.end_time goes on if that is later now.
+    void restore(ArchiveReader& archive);
 
     /// The result if the run ends here. `unfinished`: why a run that could continue was stopped.
     [[nodiscard]] RunResult result(const std::string& unfinished = "stopped by the user") const;

@@ -9,6 +9,7 @@
 #include "run/depth_run.hpp"
 #include "run/forecast.hpp"
 #include "run/run.hpp"
+#include "run/saved_state.hpp"
 #include "run/zoom.hpp"
 
 namespace talus::run {
@@ -37,6 +38,28 @@ Progress progress_of(const scene::Scene& scene, const Run& run, const RunClock& 
     return progress;
 }
 
+/// Hands the state over once, when it is wanted.
+class StateSaver {
+  public:
+    StateSaver(const scene::Scene& scene, const RunOptions& options) : scene_(scene), options_(options) {}
+
+    /// Errors: as save_state().
+    Status look_at(Run& run, bool at_end = false) {
+        if (!options_.on_state || done_) return {};
+        const bool due = at_end || (options_.save_time && run.summary().time >= *options_.save_time - 1e-9);
+        if (!due || run.phase() == RunPhase::fault) return {};
+        TALUS_ASSIGN(const std::string state, save_state(scene_, run));
+        done_ = true;
+        options_.on_state(state, run.summary().time);
+        return {};
+    }
+
+  private:
+    const scene::Scene& scene_;
+    const RunOptions& options_;
+    bool done_ = false;
+};
+
 Result<RunResult> run_zoomed(const scene::Scene& scene, const RunOptions& options) {
     TALUS_ASSIGN(ZoomedScene zoomed, zoom_in(scene, options));
     TALUS_ASSIGN(RunResult result, run_scene(zoomed.scene, options));
@@ -52,6 +75,12 @@ Result<RunResult> run_scene(const scene::Scene& scene, const RunOptions& options
     const auto started = Run::start(scene);
     if (!started) return Error{scene.file.string() + ": " + started.error().message};
     Run& run = **started;
+    if (options.on_state) TALUS_TRY(check_run_can_be_saved(run));
+    if (!options.start_from.empty()) {
+        const Status restored = restore_state(scene, run, options.start_from);
+        if (!restored) return Error{options.start_from_file + ": " + restored.error().message};
+    }
+    StateSaver saver(scene, options);
     FrameClock clock(scene, options);
     const auto show_frame = [&](bool at_end = false) {
         if (!clock.due(run.summary().time, at_end)) return;
@@ -62,13 +91,18 @@ Result<RunResult> run_scene(const scene::Scene& scene, const RunOptions& options
     const auto stopped = [&] { return options.stop_requested && options.stop_requested->load(); };
     RunClock run_clock(scene.spec.solver);
     show_frame();
+    TALUS_TRY(saver.look_at(run));
     while (!stopped() && run.advance()) {
+        TALUS_TRY(saver.look_at(run));
         show_frame();
         if (!options.on_progress) continue;
         run_clock.tick(run.wall_time(), run.summary().time, [&] { return look_at(scene, run); });
         options.on_progress(progress_of(scene, run, run_clock));
     }
-    if (run.phase() != RunPhase::fault) show_frame(true);
+    if (run.phase() != RunPhase::fault) {
+        TALUS_TRY(saver.look_at(run, true));
+        show_frame(true);
+    }
     return run.result();
 }
 

@@ -3,6 +3,9 @@
 #include <atomic>
 #include <cstdint>
 #include <functional>
+#include <optional>
+#include <string>
+#include <string_view>
 
 #include "core/result.hpp"
 #include "depth/solver.hpp"
@@ -41,6 +44,12 @@ struct RunOptions {
     std::function<void(const Frame&)> on_frame;
     std::function<void(const depth::Solver&)> on_grid_step = {};  ///< called after every step of that model
     const std::atomic<bool>* stop_requested = nullptr;            ///< ends the run as interrupted
+    std::string_view start_from = {};                             ///< a saved state (saved_state.hpp); empty: none
+    std::string start_from_file = {};                             ///< where it was read, in errors
+    /// Called once with the state, and its time, after the step that reaches `save_time`, s; if none does, or it is
+    /// absent, at the end, unless that is a fault.
+    std::function<void(const std::string& state, double time)> on_state = {};
+    std::optional<double> save_time = {};
 };
 
 /// Says when a frame is due.
@@ -64,7 +73,7 @@ class FrameClock {
 
 /// Runs a scene from beginning to end: until debris rests, end_time, a fault, or stop_requested. With a zoom: the
 /// depth-averaged model first, then particles in its area.
-/// Errors (before anything ran): as Run::start(), with the scene's file.
+/// Errors (before anything ran): as Run::start(), with the scene's file; a state that is not one of this scene.
 [[nodiscard]] Result<RunResult> run_scene(const scene::Scene& scene, const RunOptions& options);
 
 /// The scene with the path that debris followed, if the result's chainages are along that.

@@ -32,6 +32,10 @@ class RestDetector {
     bool at_rest(double time, const MovingDebris& now, bool waiting);
     /// Restarts the rest duration, after something was changed.
     void reset(double time) { quiet_since_ = time; }
+    template <class Archive>
+    void keep(Archive& archive) {
+        archive(quiet_since_);
+    }
     /// "debris came to rest (...)".
     [[nodiscard]] std::string reason() const;
 
@@ -51,6 +55,10 @@ class DeclineDetector {
 
     bool declined(double time, double value, bool waiting);
     void reset(double time);
+    template <class Archive>
+    void keep(Archive& archive) {
+        archive(peak_, low_since_);
+    }
     /// "its kinetic energy fell below 1 % of its peak (for 3 s)".
     [[nodiscard]] std::string reason() const;
 
@@ -71,6 +79,10 @@ class StopRule {
     /// Why it is over, and whether by the rest of the debris.
     [[nodiscard]] const std::string& reason() const { return reason_; }
     [[nodiscard]] bool at_rest() const { return at_rest_; }
+    template <class Archive>
+    void keep(Archive& archive) {
+        archive(rest_, energy_, momentum_, reason_, at_rest_);
+    }
 
   private:
     RestDetector rest_;

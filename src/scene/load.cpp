@@ -208,6 +208,7 @@ Result<Scene> assemble_scene(const ParsedScene& parsed) {
     shorten_outputs(scene);
     TALUS_TRY(load_observations(parsed, scene));
     TALUS_TRY(load_gauges(parsed, scene));
+    TALUS_TRY(load_cross_sections(parsed, scene));
     TALUS_TRY(load_zoom(parsed, scene));
     TALUS_TRY(check_alerts(parsed, scene));
     TALUS_TRY(particles ? check_limits(parsed, scene) : check_depth_averaged(parsed, scene));

@@ -49,6 +49,9 @@ namespace talus::scene {
 /// Fills scene.gauges. Terrain and flow path must be loaded.
 [[nodiscard]] Status load_gauges(const ParsedScene& parsed, Scene& scene);
 
+/// Fills scene.cross_sections. Terrain must be loaded.
+[[nodiscard]] Status load_cross_sections(const ParsedScene& parsed, Scene& scene);
+
 /// Fills scene.zoom where particles are run. All else must be loaded. Errors: an area that reaches beyond known ground
 /// or holds a release or an inflow, a bed, what the depth-averaged model does not have.
 [[nodiscard]] Status load_zoom(const ParsedScene& parsed, Scene& scene);

@@ -14,6 +14,7 @@
 #include "scene/zone.hpp"
 #include "terrain/bed.hpp"
 #include "terrain/buildings.hpp"
+#include "terrain/cross_section.hpp"
 #include "terrain/flow_path.hpp"
 #include "terrain/gauge.hpp"
 #include "terrain/ground_cover.hpp"
@@ -62,6 +63,7 @@ struct Scene {
     terrain::FlowPath flow_path;
     PathOrigin flow_path_origin = PathOrigin::file;
     std::vector<terrain::Gauge> gauges;
+    std::vector<terrain::CrossSection> cross_sections;
     std::optional<Polygon> zoom;                         ///< its area, with particles; nothing: no zoom
     std::vector<std::vector<Polygon>> deposit_outlines;  ///< as in SceneSpec::deposit_outlines
     std::vector<std::vector<Polygon>> affected_areas;    ///< as in SceneSpec::affected_areas

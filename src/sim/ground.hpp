@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <utility>
 #include <vector>
 
@@ -37,6 +38,44 @@ struct Ground {
         buildings[building] = without_solid(std::move(buildings[building]));
         solids = terrain::BuildingSolids(terrain, buildings, range);
     }
+
+    /// What a run has changed since the ground was made of the same scene.
+    template <class Archive>
+    void keep(Archive& archive);
+
+  private:
+    /// A cell of the bed that debris has eroded.
+    struct Eroded {
+        std::size_t cell;
+        float depth, elevation;  ///< m, now
+    };
 };
+
+template <class Archive>
+void Ground::keep(Archive& archive) {
+    std::vector<Eroded> eroded;
+    std::vector<std::uint8_t> standing;
+    if constexpr (!Archive::reading) {
+        for (std::size_t cell = 0; cell < bed.eroded.size(); ++cell) {
+            if (bed.eroded[cell] != 0) {
+                eroded.push_back({cell, bed.eroded[cell], terrain.elevation().values[cell]});
+            }
+        }
+        for (const terrain::Building& building : buildings) standing.push_back(terrain::stands(building) ? 1 : 0);
+    }
+    // Not made again from the buildings: they are those of the terrain at the last failure.
+    archive(eroded, standing, solids);
+    if constexpr (Archive::reading) {
+        for (const Eroded& e : eroded) {
+            if (e.cell >= bed.eroded.size()) return archive.fail();
+            bed.eroded[e.cell] = e.depth;
+            terrain.set_elevation(e.cell, e.elevation);
+        }
+        if (standing.size() != buildings.size()) return archive.fail();
+        for (std::size_t b = 0; b < buildings.size(); ++b) {
+            if (standing[b] == 0) buildings[b] = terrain::without_solid(std::move(buildings[b]));
+        }
+    }
+}
 
 }  // namespace talus::sim

@@ -227,6 +227,19 @@ void Simulation::make_room(std::uint32_t count) {
     if (device_ == nullptr) processor_.emplace(model_, capacity_);
 }
 
+void Simulation::save(ArchiveWriter& archive) {
+    fetch();
+    archive(state_, ground_, inflow_, entrainment_, highest_energy_head_);
+}
+
+void Simulation::restore(ArchiveReader& archive) {
+    archive(state_, ground_, inflow_, entrainment_, highest_energy_head_);
+    if (archive.failed() || state_.room() < state_.count) return archive.fail();
+    make_room(static_cast<std::uint32_t>(std::max<std::size_t>(capacity_, state_.room())));
+    device_is_older_ = true;
+    keep();
+}
+
 void Simulation::change(const std::function<void(Model&, Ground&, State&)>& edit) {
     fetch();
     edit(model_, ground_, state_);

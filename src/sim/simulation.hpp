@@ -7,6 +7,7 @@
 #include <optional>
 #include <string>
 
+#include "core/archive.hpp"
 #include "core/result.hpp"
 #include "sim/cpu/backend.hpp"
 #include "sim/device/backend.hpp"
@@ -65,6 +66,11 @@ class Simulation {
     /// That copy, with positions, velocities, ids, and what is held or asleep; without particles if a lost device had
     /// it.
     [[nodiscard]] const State& kept();
+
+    /// What its steps have changed, between two of them: one of the same model, ground and inflows that reads it goes
+    /// on as this one.
+    void save(ArchiveWriter& archive);
+    void restore(ArchiveReader& archive);
 
     [[nodiscard]] const InflowFeeder& inflow() const { return inflow_; }
     [[nodiscard]] const StageTimes& stage_times() const { return times_; }

@@ -21,6 +21,11 @@ inline constexpr std::size_t array_padding = block_size;
 struct VectorArray {
     std::vector<float> x, y, z;
 
+    template <class Archive>
+    void keep(Archive& archive) {
+        archive(x, y, z);
+    }
+
     void resize(std::size_t n) {
         for (auto* component : {&x, &y, &z}) component->resize(n + array_padding);
     }
@@ -35,6 +40,11 @@ struct VectorArray {
 /// A traceless symmetric tensor per particle; zz = -xx - yy.
 struct DeviatorArray {
     std::vector<float> xx, yy, xy, xz, yz;
+
+    template <class Archive>
+    void keep(Archive& archive) {
+        archive(xx, yy, xy, xz, yz);
+    }
 
     void resize(std::size_t n) {
         for (auto* component : {&xx, &yy, &xy, &xz, &yz}) component->resize(n + array_padding);
@@ -140,6 +150,13 @@ struct StateSummary {
     int iterations = 0;                                    ///< of the step
     double max_speed = 0;                                  ///< m/s
     std::vector<BuildingContact> building_contacts;
+
+    template <class Archive>
+    void keep(Archive& archive) {
+        archive(time, time_step, previous_time_step, step, count, awake, seeded, entrained, outflow, removed,
+                mean_compression, max_compression, mean_added_compression, overcompressed_share, squeezing_share,
+                iterations, max_speed, building_contacts);
+    }
 };
 
 /// Everything that changes during a run, as a structure of arrays in an order that every step recomputes so that
@@ -155,6 +172,14 @@ struct State : StateSummary {
 #define TALUS_RESIZE(array, element, name) sim::resize(name, n);
         TALUS_PARTICLE_ARRAYS(TALUS_RESIZE)
 #undef TALUS_RESIZE
+    }
+    template <class Archive>
+    void keep(Archive& archive) {
+        StateSummary::keep(archive);
+#define TALUS_KEEP(array, element, name) archive(name);
+        TALUS_PARTICLE_ARRAYS(TALUS_KEEP)
+#undef TALUS_KEEP
+        archive(density_of_id, entry_of_id);
     }
     /// Particles that the arrays have room for.
     [[nodiscard]] std::size_t room() const {

@@ -90,6 +90,11 @@ class BuildingSolids {
         for (Solid& solid : solids_) solid.passing_share = 0;
     }
 
+    template <class Archive>
+    void keep(Archive& archive) {
+        archive(edges_, solids_, range_, bins_);
+    }
+
   private:
     using Edge = WallEdge;
     using Solid = WallSolid;

@@ -46,6 +46,11 @@ class PlanBins {
     [[nodiscard]] const std::vector<std::uint32_t>& starts() const { return start_; }
     [[nodiscard]] const std::vector<std::uint32_t>& items() const { return items_; }
 
+    template <class Archive>
+    void keep(Archive& archive) {
+        archive(box_.x_min, box_.y_min, box_.edge, box_.columns, box_.rows, start_, items_);
+    }
+
   private:
     PlanBinItems box_;                          // without its pointers
     std::vector<std::uint32_t> start_, items_;  // start_ has one entry more than there are bins

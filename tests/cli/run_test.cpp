@@ -61,6 +61,28 @@ TEST(Run, OnTheCodeOfACardSaysSoInTheManifest) {
     }
 }
 
+TEST(Run, WritesContoursTracksAndDischargeWhereTheyAreAskedFor) {
+    const SmallScene scene;
+    scene.replace("[[observation]]",
+                  "[[cross_section]]\nname = \"ditch\"\nline_m = [[824195, 825150], [824195, 825050]]\n"
+                  "interval_s = 0.25\n[[observation]]");
+    const auto outcome = run_program({"run", "slope.toml", "-o", "result", "--contours", "peak_depth=0.05,0.1",
+                                      "--contours", "peak_speed=1", "--tracks"},
+                                     {.folder = scene.folder()});
+    ASSERT_EQ(outcome.exit_code, 0) << outcome.error;
+    EXPECT_THAT(outcome.out, HasSubstr("ditch: peak "));
+    EXPECT_THAT(read_text(scene.input("result/tracks.csv")), HasSubstr("particle,time_s"));
+    EXPECT_TRUE(fs::exists(scene.folder() / "result/tracks.gpkg"));
+    EXPECT_GE(lines_of(read_text(scene.input("result/discharge.csv"))).size(), 5U);
+    const GDALDatasetUniquePtr data(GDALDataset::Open(scene.input("result/results.gpkg").c_str(), GDAL_OF_VECTOR));
+    ASSERT_TRUE(data);
+    for (const char* layer : {"contours_peak_depth", "contours_peak_speed", "cross_sections"}) {
+        EXPECT_NE(data->GetLayerByName(layer), nullptr) << layer;
+    }
+    const auto manifest = nlohmann::json::parse(read_text(scene.input("result/manifest.json")));
+    EXPECT_GT(manifest["results"]["cross_sections"][0]["passed_m3"], 0);
+}
+
 TEST(Run, QuietPrintsNothing) {
     const SmallScene scene;
     const auto outcome = run_program({"run", "slope.toml", "--quiet", "-o", "result"}, {.folder = scene.folder()});

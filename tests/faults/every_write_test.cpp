@@ -75,6 +75,14 @@ TEST(EveryWrite, of_a_run_that_fails_leaves_nothing) {
             continue;
         }
         expect_told(outcome, "result");
+        if (fs::exists(scene.folder() / "result")) {  // the run over time is missing, or a format of it
+            EXPECT_THAT(outcome.error, HasSubstr("all other results are in result"));
+            auto found = contents(scene.folder() / "result");
+            for (const auto& [name, text] : whole) {
+                if (!name.starts_with("series/")) EXPECT_EQ(found[name], text) << name;
+            }
+            continue;
+        }
         EXPECT_EQ(scene.files(), before);
     }
 }

@@ -46,6 +46,24 @@ TEST(Contours, AHillHasClosedContours) {
     EXPECT_NEAR(length, 2 * 3.14159 * 10, 0.5);
 }
 
+TEST(Contours, AtGivenLevelsAreAtThoseAlone) {
+    Grid<float> hill(GridGeometry{0, 0, 1, 41, 41});
+    for (int r = 0; r < 41; ++r) {
+        for (int c = 0; c < 41; ++c) {
+            hill.at(c, r) = std::max(0.0F, static_cast<float>(2 - 0.1 * std::hypot(c - 20, r - 20)));
+        }
+    }
+    const auto lines = contours(hill, std::vector<double>{0.35, 1.1, 5});
+    ASSERT_EQ(lines.size(), 2U) << "nothing is as high as 5";
+    for (const Contour& line : lines) {
+        const double radius = (2 - line.elevation) * 10;
+        for (const PlanPoint& p : line.points) EXPECT_NEAR(std::hypot(p.x - 20.5, p.y - 20.5), radius, 0.1);
+        EXPECT_EQ(line.points.front().x, line.points.back().x) << "closed";
+    }
+    EXPECT_EQ(lines[0].elevation, 0.35);
+    EXPECT_EQ(lines[1].elevation, 1.1);
+}
+
 TEST(Contours, EndWhereThereIsNoElevation) {
     Grid<float> plane(GridGeometry{0, 0, 1, 20, 20}, std::numeric_limits<float>::quiet_NaN());
     EXPECT_TRUE(contours(plane, 1).empty());

@@ -1,13 +1,26 @@
 #pragma once
 
+#include <vector>
+
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
+#include <ogrsf_frmts.h>
 
 #include "products/products.hpp"
 #include "report/report_fixture.hpp"
 #include "support/fixtures.hpp"
 
 namespace talus::products {
+
+/// The features of a layer of a file.
+inline std::vector<OGRFeatureUniquePtr> read_layer(GDALDataset& data, const char* name) {
+    std::vector<OGRFeatureUniquePtr> features;
+    OGRLayer* layer = data.GetLayerByName(name);
+    EXPECT_NE(layer, nullptr) << name;
+    if (layer == nullptr) return features;
+    for (auto& feature : layer) features.push_back(std::move(feature));
+    return features;
+}
 
 /// All products of the sample valley, written once.
 class Products : public testing::Test {

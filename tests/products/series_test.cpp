@@ -66,13 +66,26 @@ class SeriesOfARun : public testing::Test {
         for (const double time : {0.0, 1.0, 2.5}) {
             if (Status added = series.add(frame_at(time, map)); !added) return added;
         }
-        return series.finish(result);
+        const std::vector<std::string> missing = series.finish(result);
+        return missing.empty() ? Status() : Status(Error{missing.front()});
     }
 
     scene::Scene scene = test::sample_scene();
     run::RunResult result = test::sample_result(scene);
     TemporaryFolder folder;
 };
+
+TEST_F(SeriesOfARun, OneThatFailsTakesNoOtherWithIt) {
+    scene.spec.outputs.series = {"netcdf", "geotiff"};
+    Series series(scene, folder.path() / "series");
+    ASSERT_TRUE(series.add(frame_at(0, result.observation.maps.peak_depth.geometry)));
+    std::filesystem::create_directories(folder.path() / "series/maps.nc/in the way");
+    const std::vector<std::string> missing = series.finish(result);
+    ASSERT_EQ(missing.size(), 1U);
+    EXPECT_THAT(missing.front(), HasSubstr("maps.nc"));
+    EXPECT_TRUE(std::filesystem::exists(folder.path() / "series/pressure.tif"));
+    EXPECT_FALSE(std::filesystem::exists(folder.path() / "series/maps.nc"));
+}
 
 TEST_F(SeriesOfARun, IsOnTheCellsOfItsMapsAndSaysWhereItIsFrom) {
     const Status status = write({"netcdf", "geotiff"});

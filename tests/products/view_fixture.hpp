@@ -34,7 +34,8 @@ class ViewOfARun : public testing::Test {
             if (with_particles) frame.particles = &state;
             if (Status added = series.add(frame); !added) return added;
         }
-        return series.finish(result);
+        const std::vector<std::string> missing = series.finish(result);
+        return missing.empty() ? Status() : Status(Error{missing.front()});
     }
     [[nodiscard]] std::string file(const std::string& name) const { return folder.file("series/" + name); }
 

@@ -27,6 +27,12 @@ class AreaSource {
     /// Injects what is due at the state's time; the state's arrays must have room.
     void inject(const Model& model, const Ground& ground, State& state);
 
+    /// What was injected so far.
+    template <class Archive>
+    void keep(Archive& archive) {
+        archive(injected_, last_time_, site_);
+    }
+
   private:
     struct Top {  ///< of a particle at a place where one may be injected
         LocalPoint place;

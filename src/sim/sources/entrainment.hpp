@@ -28,6 +28,14 @@ class Entrainment {
     /// Turns ground into particles at the sites of find(). The arrays of `state` must have room for them.
     void apply(const Model& model, Ground& ground, State& state);
 
+    /// What has come loose so far.
+    template <class Archive>
+    void keep(Archive& archive) {
+        archive(loose_);
+        count_.resize(loose_.size());
+        rate_.resize(loose_.size());
+    }
+
   private:
     struct Site {
         std::uint32_t particle = 0;  ///< sorted index of the particle below which ground comes loose

@@ -43,6 +43,13 @@ class InflowFeeder {
     /// if the state's arrays have room.
     void inject(const Model& model, const Ground& ground, State& state);
 
+    /// What was injected so far, of the same inflows.
+    template <class Archive>
+    void keep(Archive& archive) {
+        for (Source& s : sources_) archive(s.injected, s.rows, s.last_time, s.prescribed);
+        for (AreaSource& area : areas_) archive(area);
+    }
+
   private:
     static constexpr std::uint64_t buffer_rows = 3;
     struct Row {
