@@ -103,7 +103,7 @@ template <class Archive>
 void ImpactRecorder::keep(Archive& archive) {
     archive(patches_, sums_, slot_building_, impacts_, records_, touched_, failed_, jumped_);
     for (auto& crossings : crossings_) {
-        bool stands = crossings != nullptr;
+        bool stands = static_cast<bool>(crossings);
         archive(stands);
         if (!stands) crossings.reset();
         if (crossings) archive(*crossings);

@@ -50,20 +50,20 @@ TimeSample make_sample(const sim::Model& model, const Debris& debris, double dep
     return sample;
 }
 
-/// What reads the particles on a device. A copy of the observer reads those of its own run.
-struct OnDevice {
-    const sim::device::Backend* backend = nullptr;
-    std::unique_ptr<device::Particles> particles;
-
-    OnDevice() = default;
-    OnDevice(const OnDevice& /*of another run*/) {}
-    OnDevice& operator=(const OnDevice&) = delete;
-    ~OnDevice() = default;
-};
-
 }  // namespace
 
 struct Observer::Parts {
+    /// What reads the particles on a device. A copy of the observer reads those of its own run.
+    struct OnDevice {
+        const sim::device::Backend* backend = nullptr;
+        std::unique_ptr<device::Particles> particles;
+
+        OnDevice() = default;
+        OnDevice(const OnDevice& /*of another run*/) {}
+        OnDevice& operator=(const OnDevice&) = delete;
+        ~OnDevice() = default;
+    };
+
     Parts(const sim::Model& model, const sim::Ground& ground, const sim::State& state,
           const terrain::FlowPath& flow_path, const params::OutputSpec& o, double map_cell)
         : outputs(o),
@@ -295,7 +295,7 @@ void Observer::save(ArchiveWriter& archive) {
 void Observer::restore(ArchiveReader& archive) {
     archive(*parts_);
     if (parts_->timeseries.empty()) archive.fail();  // it has a row from the beginning on
-    if (parts_->on_device) parts_->on_device->forget_walls();
+    if (parts_->on_device.particles) parts_->on_device.particles->forget_walls();
 }
 
 const Overtopping* Observer::overtopping(std::size_t building) const {
