@@ -114,6 +114,11 @@ Answer read_answer(Socket& socket, std::string& buffer, bool head) {
     return answer;
 }
 
+AnswerWatcher& answer_watcher() {
+    static AnswerWatcher watcher;
+    return watcher;
+}
+
 Answer HttpClient::ask(const std::string& method, const std::string& target, const std::string& body,
                        const Headers& headers) {
     std::string text = method + " " + target + " HTTP/1.1\r\n";
@@ -135,7 +140,9 @@ Answer HttpClient::ask(const std::string& method, const std::string& target, con
         socket_->send(text);
         Answer answer = read_answer(*socket_, buffer_, method == "HEAD");
         if (answer.status == 0 || answer.headers["connection"] == "close") socket_.reset();
-        if (answer.status != 0 || fresh) return answer;
+        if (answer.status == 0 && !fresh) continue;
+        if (answer_watcher() && answer.status != 0) answer_watcher()(method, target, answer);
+        return answer;
     }
     return {};
 }

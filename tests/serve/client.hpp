@@ -2,6 +2,7 @@
 
 #include <chrono>
 #include <cstdint>
+#include <functional>
 #include <map>
 #include <optional>
 #include <string>
@@ -51,6 +52,10 @@ struct Answer {
 
 /// Reads one answer; `head`: one that has no body.
 Answer read_answer(Socket& socket, std::string& buffer, bool head = false);
+
+/// Is told of every answer that an HttpClient gets: method, target, answer. Empty: nobody is.
+using AnswerWatcher = std::function<void(const std::string&, const std::string&, const Answer&)>;
+AnswerWatcher& answer_watcher();
 
 using Headers = std::vector<std::pair<std::string, std::string>>;
 

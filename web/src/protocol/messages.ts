@@ -43,9 +43,13 @@ export interface NewScenario {
 
 /** Somebody who has the page open. */
 export interface Person {
+  /** Of this person, while connected. */
   id: string;
+  /** As the person gave it. */
   name: string;
+  /** What the token entitles to. */
   role: Role;
+  /** Of the person's mark, as #rrggbb. */
   colour: string;
   /** Local position that the person points at, m. */
   mark: Place | null;
@@ -53,16 +57,25 @@ export interface Person {
 
 /** The person of a page itself. */
 export interface You {
+  /** Of this person, while connected. */
   id: string;
+  /** As the server has it. */
   name: string;
+  /** What the token entitles to. */
   role: Role;
+  /** Of the person's mark, as #rrggbb. */
   colour: string;
   /** What this page shows with its requests, so that nobody can act in its name. */
   secret: string;
 }
 
 /** Who asks for control. */
-export interface ControlRequest { id: string; name: string }
+export interface ControlRequest {
+  /** Of the person. */
+  id: string;
+  /** Of the person. */
+  name: string;
+}
 
 /** Who is here, what runs. */
 export interface Session {
@@ -76,7 +89,9 @@ export interface Session {
   title: string;
   /** What the token of the request entitles to. */
   you: { role: Role };
+  /** Those that there are. */
   scenarios: ScenarioName[];
+  /** Those who have the page open. */
   people: Person[];
   /** Id of who has control. */
   controller: string | null;
@@ -88,24 +103,39 @@ export interface Session {
 
 /** Body of POST /api/control. */
 export interface WantedControl {
+  /** Ask for it, give it up, grant a request or decline it. */
   do: "request" | "release" | "grant" | "decline";
   /** From the WebSocket's hello; default: the header's. */
   secret?: string;
 }
 
 /** null: no bound. */
-export interface ParameterRange { low: number | null; high: number | null; low_included: boolean; high_included: boolean }
+export interface ParameterRange {
+  /** Lowest value. */
+  low: number | null;
+  /** Highest value. */
+  high: number | null;
+  /** The lowest value itself is allowed. */
+  low_included: boolean;
+  /** The highest value itself is allowed. */
+  high_included: boolean;
+}
 
 /** A live parameter, from the declaration that also makes the scene file's reference. */
 export interface Parameter {
   /** Such as material.friction_coefficient. */
   key: string;
+  /** For people. */
   label: string;
+  /** Empty: a pure number. */
   unit: string;
   /** In this scene. */
   default: number | null;
+  /** Now. */
   value: number | null;
+  /** Of allowed values in this scene. */
   range: ParameterRange;
+  /** What it is, one sentence. */
   help: string;
   /** Whether the depth-averaged model has a use for it. */
   used_by_depth_averaged: boolean;
@@ -113,19 +143,25 @@ export interface Parameter {
 
 /** What was observed in the field. */
 export interface Observation {
+  /** For people. */
   name: string;
   /** Along the flow path. */
   chainage_m: number;
+  /** What was observed. */
   quantity: "front_velocity" | "debris_speed";
+  /** Its value. */
   observed_mps: number;
+  /** Where it was published. */
   source: string;
 }
 
 /** The line along which the front is measured. */
 export interface FlowPath {
+  /** From top to bottom. */
   points: Place[];
   /** At each of the points. */
   chainage_m: number[];
+  /** Debris within it counts for the front. */
   corridor_width_m: number;
   /** Traced down the terrain; false: from a file. */
   traced: boolean;
@@ -133,18 +169,29 @@ export interface FlowPath {
 
 /** A gauge of the scene file. */
 export interface GaugePlace {
+  /** For people. */
   name: string;
+  /** East. */
   x_m: number;
+  /** North. */
   y_m: number;
   /** Null: given as a place. */
   chainage_m: number | null;
 }
 
 /** A value of a map of classes. */
-export interface Category { name: string; colour: string }
+export interface Category {
+  /** For people. */
+  name: string;
+  /** As #rrggbb. */
+  colour: string;
+}
 
 /** A class of a guideline. */
-export interface IntensityClass extends Category { criterion: string }
+export interface IntensityClass extends Category {
+  /** For people. */
+  criterion: string;
+}
 
 /** Grid of depth windows, and of layers except erosion_depth. */
 export interface MapGrid {
@@ -152,8 +199,11 @@ export interface MapGrid {
   x_min_m: number;
   /** South edge. */
   y_min_m: number;
+  /** Edge of a cell. */
   cell_m: number;
+  /** From west to east. */
   columns: number;
+  /** From south to north. */
   rows: number;
 }
 
@@ -161,6 +211,7 @@ export interface MapGrid {
 export interface IntensityGuideline {
   /** Name of that of outputs.intensity_guideline. */
   guideline: string;
+  /** From low to high. */
   classes: IntensityClass[];
   /** One sentence. */
   rule: string;
@@ -170,15 +221,21 @@ export interface IntensityGuideline {
 
 /** What does not change during a session. */
 export interface SceneInfo {
+  /** Of the scene. */
   title: string;
+  /** Of the scene file. */
   description: string;
   /** Whether it reconstructs an event, as the scene says. */
   reconstruction: boolean;
+  /** Sentences of the scene file. */
   assumptions: string[];
+  /** Publications, of the scene file. */
   sources: string[];
   /** Reference system, such as EPSG:2326. */
   crs: string;
+  /** Name of the reference system. */
   crs_name: string;
+  /** Of the terrain file's elevations. */
   vertical_unit: string;
   /** Of the middle of the terrain; null where the reference system does not say. */
   latitude_deg: number | null;
@@ -192,10 +249,15 @@ export interface SceneInfo {
   map: MapGrid;
   /** Whether /api/orthophoto has a picture. */
   orthophoto: boolean;
+  /** Between neighbouring particles at rest. */
   particle_spacing_m: number;
+  /** At which a run ends at the latest. */
   end_time_s: number;
+  /** Of the solver. */
   gravity_mps2: number;
+  /** Along which the front is measured; null: there is none. */
   flow_path: FlowPath | null;
+  /** What the scene file has of the field. */
   observations: Observation[];
   /** As the scene file has them. */
   gauges: GaugePlace[];
@@ -203,6 +265,7 @@ export interface SceneInfo {
   parameters: Parameter[];
   /** Keys of the scene that others need, such as solver.internal_friction, with their values. */
   settings: Record<string, string>;
+  /** The scene's guideline. */
   intensity: IntensityGuideline;
 }
 
@@ -211,11 +274,17 @@ export type Status = "paused" | "running" | "at_rest" | "ended" | "fault";
 
 /** A number of a run against its limit. */
 export interface Check {
+  /** Which number. */
   key: "resolution" | "compression" | "energy" | "still_moving" | "convergence";
+  /** For people. */
   name: string;
+  /** Of the number against its limit. */
   state: "within" | "beyond" | "not_measured";
+  /** Null: not measured. */
   value: number | null;
+  /** Null: there is none. */
   limit: number | null;
+  /** Of value and limit. */
   unit: string;
   /** One sentence. */
   text: string;
@@ -229,11 +298,13 @@ export interface Verdict {
   text: string;
   /** A sentence for each check beyond its limit. */
   warnings: string[];
+  /** All of them. */
   checks: Check[];
 }
 
 /** A change that is being prepared. */
 export interface Preparation {
+  /** For people. */
   what: string;
   /** That is done, 0 to 1. */
   share: number;
@@ -241,8 +312,11 @@ export interface Preparation {
 
 /** What is recorded; null: nothing yet. */
 export interface RecordingExtent {
+  /** Time of the first frame. */
   first_s: number | null;
+  /** Time of the last frame. */
   last_s: number | null;
+  /** Number of frames. */
   frames: number;
   /** Of memory. */
   bytes: number;
@@ -250,7 +324,9 @@ export interface RecordingExtent {
 
 /** Status, time, rates and mass balance of a scenario. */
 export interface State {
+  /** Its name. */
   scenario: ScenarioName;
+  /** Whether it runs. */
   status: Status;
   /** One sentence, or empty. */
   message: string;
@@ -268,7 +344,9 @@ export interface State {
   speed_factor: number | null;
   /** Simulated seconds per second of late. */
   real_time_factor: number;
+  /** Wall time. */
   steps_per_second: number;
+  /** In the run now. */
   particles: number;
   /** With what has flowed in. */
   volume_released_m3: number;
@@ -276,10 +354,13 @@ export interface State {
   volume_entrained_m3: number;
   /** Not started yet. */
   volume_held_m3: number;
+  /** Moving now. */
   volume_moving_m3: number;
+  /** At rest. */
   volume_deposited_m3: number;
   /** Beyond the edge of the terrain. */
   volume_left_m3: number;
+  /** How far the front has come; null: there is none. */
   front_chainage_m: number | null;
   /** Null: it does not advance. */
   front_velocity_mps: number | null;
@@ -287,7 +368,9 @@ export interface State {
   largest_speed_mps: number | null;
   /** The largest so far. */
   peak_speed_mps: number | null;
+  /** Mean of max(0, density / rest density - 1). */
   mean_compression: number | null;
+  /** Largest of the same. */
   max_compression: number | null;
   /** Of the particles. */
   overcompressed_share: number | null;
@@ -297,6 +380,7 @@ export interface State {
   verdict: Verdict | null;
   /** A change that is being prepared, and the share of it that is done. */
   preparing: Preparation | null;
+  /** What is recorded. */
   recording: RecordingExtent;
   /** Of time and particles; while not running. */
   hash?: string;
@@ -304,12 +388,17 @@ export interface State {
 
 /** Debris that starts to move at one moment. */
 export interface Release extends ReleaseValues {
+  /** Of this object, as actions name it. */
   id: string;
+  /** For people. */
   name: string;
   /** Outlines. */
   polygons: Point[][];
+  /** Of all its patches. */
   volume_m3: number;
+  /** It is of the scene file; false: somebody made it here. */
   from_scene: boolean;
+  /** Released: it has started, or its trigger has been pulled. */
   status: "held" | "released";
   /** Null: it has not started. */
   start_time_s: number | null;
@@ -323,19 +412,27 @@ export type WantedBarrierOpening = Omit<BarrierOpeningValues, "sill_height_m"> &
 
 /** A wall, a dam or a net along a line. */
 export interface Barrier extends BarrierValues {
+  /** Of this object, as actions name it. */
   id: string;
+  /** For people. */
   name: string;
+  /** The places that it runs through. */
   line: Point[];
   /** The mean of a level crest. */
   height_m: number;
+  /** Along its line. */
   openings: BarrierOpening[];
+  /** Along its line. */
   crest_length_m: number;
+  /** It is of the scene file; false: somebody made it here. */
   from_scene: boolean;
 }
 
 /** A solid obstacle with vertical walls and a flat roof. */
 export interface Building extends BuildingsValues {
+  /** Of this object, as actions name it. */
   id: string;
+  /** For people. */
   name: string;
   /** Polygons: the outer ring, then holes. */
   footprint: Point[][][];
@@ -343,29 +440,39 @@ export interface Building extends BuildingsValues {
   base_m: number | null;
   /** Elevation; null likewise. */
   roof_m: number | null;
+  /** It is of the scene file; false: somebody made it here. */
   from_scene: boolean;
 }
 
 /** Ground with properties of its own. Later ones go before earlier ones. */
 export interface Zone extends ZoneValues {
+  /** Of this object, as actions name it. */
   id: string;
+  /** For people. */
   name: string;
   /** The outer ring, then holes; none: from a raster. */
   polygons: Point[][][];
+  /** Inside the outlines. */
   area_m2: number;
+  /** It is of the scene file; false: somebody made it here. */
   from_scene: boolean;
 }
 
 /** Loose material on the ground that debris entrains. */
 export interface Bed extends BedValues {
+  /** Of this object, as actions name it. */
   id: string;
+  /** For people. */
   name: string;
   /** The outer ring, then holes; none: from a raster, or everywhere. */
   polygons: Point[][][];
+  /** That it covers. */
   area_m2: number;
+  /** That debris could entrain at most. */
   volume_m3: number;
   /** Null: it differs from place to place. */
   depth_m: number | null;
+  /** It is of the scene file; false: somebody made it here. */
   from_scene: boolean;
   /** False: from the next restart. */
   in_force: boolean;
@@ -376,7 +483,9 @@ export type HydrographRow = Omit<HydrographValues, "density_kgpm3"> & Partial<Hy
 
 /** Debris injected during the run: to the right of a line, seen along it, or over an area. */
 export interface Inflow extends InflowValues {
+  /** Of this object, as actions name it. */
   id: string;
+  /** For people. */
   name: string;
   /** Null: over an area. */
   line: Point[] | null;
@@ -384,7 +493,9 @@ export interface Inflow extends InflowValues {
   polygons: Point[][][];
   /** Null: more than 200 rows. */
   hydrograph: HydrographRow[] | null;
+  /** Of the whole hydrograph. */
   volume_m3: number;
+  /** It is of the scene file; false: somebody made it here. */
   from_scene: boolean;
   /** False: from the next restart. */
   in_force: boolean;
@@ -392,12 +503,17 @@ export interface Inflow extends InflowValues {
 
 /** Where depth and speed are recorded. */
 export interface Gauge {
+  /** Of this object, as actions name it. */
   id: string;
+  /** For people. */
   name: string;
+  /** East. */
   x_m: number;
+  /** North. */
   y_m: number;
   /** Null: given as a place. */
   chainage_m: number | null;
+  /** It is of the scene file; false: somebody made it here. */
   from_scene: boolean;
   /** False: from the next restart. */
   in_force: boolean;
@@ -405,18 +521,29 @@ export interface Gauge {
 
 /** A text that people have pinned to a place; it does not affect the run. */
 export interface Note {
+  /** Of this object, as actions name it. */
   id: string;
   /** The text. */
   name: string;
+  /** East. */
   x_m: number;
+  /** North. */
   y_m: number;
 }
 
 /** A change of a run after its first step. */
-export interface ChangeOnTheWay { time_s: number; by: string; sentence: string }
+export interface ChangeOnTheWay {
+  /** Simulated. */
+  time_s: number;
+  /** Name of who made it. */
+  by: string;
+  /** What was done. */
+  sentence: string;
+}
 
 /** Parameters and objects of a scenario as they are now. */
 export interface Setup {
+  /** Its name. */
   scenario: ScenarioName;
   /** Given by people; may be empty. */
   name: string;
@@ -426,12 +553,17 @@ export interface Setup {
   changes: ChangeOnTheWay[];
   /** Values by key. */
   parameters: Record<string, number | null>;
+  /** Debris that starts at one moment. */
   releases: Release[];
+  /** Walls, dams and nets. */
   barriers: Barrier[];
+  /** Solid obstacles. */
   buildings: Building[];
   /** Later ones go before earlier ones. */
   zones: Zone[];
+  /** Ground that debris entrains. */
   beds: Bed[];
+  /** Debris that comes during the run. */
   inflows: Inflow[];
   /** Where depth and speed are recorded. */
   gauges: Gauge[];
@@ -447,16 +579,25 @@ export interface Setup {
 
 /** What a structure has met. */
 export interface Impact {
+  /** Of the structure. */
   id: string;
+  /** Of the structure. */
   name: string;
+  /** Debris has touched it. */
   hit: boolean;
+  /** Null: it was not hit. */
   first_hit_s: number | null;
+  /** Largest filtered force. */
   peak_force_kN: number | null;
+  /** Largest on a patch of its walls. */
   peak_impact_pressure_kPa: number | null;
   /** At its walls. */
   peak_depth_m: number | null;
+  /** Depth-averaged, at its walls. */
   peak_speed_mps: number | null;
+  /** Density times square of the speed towards its walls. */
   peak_dynamic_pressure_kPa: number | null;
+  /** Force over time. */
   impulse_kNs: number;
   /** When its resistance was exceeded. */
   failed_s: number | null;
@@ -466,37 +607,61 @@ export interface Impact {
 
 /** What a barrier has met and done. */
 export interface BarrierImpact extends Impact {
+  /** Debris that went over it. */
   overtopped_m3: number;
+  /** Null: nothing went over it. */
   first_overtopped_s: number | null;
   /** Through openings and meshes. */
   passed_m3: number;
   /** Debris that it retains at that time. */
   retained_m3: number;
+  /** Largest height of debris behind it. */
   peak_filling_height_m: number;
 }
 
 /** An obstacle removed during the run, and its impact until then. */
 export interface RemovedImpact extends Impact {
+  /** What it was. */
   kind: "building" | "barrier";
+  /** When it was taken away. */
   removed_s: number;
   /** This and the following: of a barrier. */
   overtopped_m3?: number;
+  /** Null: nothing went over it. */
   first_overtopped_s?: number | null;
+  /** Through openings and meshes. */
   passed_m3?: number;
+  /** Debris that it retained last. */
   retained_m3?: number;
+  /** Largest height of debris behind it. */
   peak_filling_height_m?: number;
 }
 
 /** A row per obstacle. */
 export interface Impacts {
+  /** In the order of the setup. */
   buildings: Impact[];
+  /** In the order of the setup. */
   barriers: BarrierImpact[];
   /** Obstacles that were taken away while the run went on, with what they had met until then. */
   removed: RemovedImpact[];
 }
 
 /** What passed a gauge, and what is there. */
-export interface GaugeReading { name: string; arrival_s: number | null; depth_m: number; speed_mps: number; peak_depth_m: number; peak_speed_mps: number }
+export interface GaugeReading {
+  /** Of the gauge. */
+  name: string;
+  /** When debris came; null: none has. */
+  arrival_s: number | null;
+  /** There. */
+  depth_m: number;
+  /** There. */
+  speed_mps: number;
+  /** So far. */
+  peak_depth_m: number;
+  /** So far. */
+  peak_speed_mps: number;
+}
 
 export interface GaugeReadings {
   /** In the scene's order. */
@@ -504,50 +669,94 @@ export interface GaugeReadings {
 }
 
 /** The front over chainage. */
-export interface FrontSeries { chainage_m: number[]; arrival_time_s: Column; front_velocity_mps: Column; particle_speed_mps: Column }
+export interface FrontSeries {
+  /** Along the flow path. */
+  chainage_m: number[];
+  /** Of the front. */
+  arrival_time_s: Column;
+  /** There. */
+  front_velocity_mps: Column;
+  /** Of the debris at the front. */
+  particle_speed_mps: Column;
+}
 
 /** At most 600 rows; a column of depths per gauge of the scene. */
-export interface GaugeSeries { time_s: number[]; depth_m: number[][] }
+export interface GaugeSeries {
+  /** A row each. */
+  time_s: number[];
+  /** A column per gauge. */
+  depth_m: number[][];
+}
 
 /** Time series, and the front over chainage. */
 export interface Series {
   /** Columns of equal length by key: time_s, front_chainage_m, volume_..._m3, ... */
   time: Record<string, Column>;
+  /** Over chainage. */
   front: FrontSeries;
   /** At most 600 rows; a column of depths per gauge of the scene. */
   gauges: GaugeSeries;
 }
 
 /** At a point over the recording. */
-export interface ProbeSeries { time_s: number[]; depth_m: Column; speed_mps: Column; pressure_kPa: Column }
+export interface ProbeSeries {
+  /** Of the recorded frames. */
+  time_s: number[];
+  /** Of the flow. */
+  depth_m: Column;
+  /** Depth-averaged. */
+  speed_mps: Column;
+  /** Dynamic: density times square of the speed. */
+  pressure_kPa: Column;
+}
 
 /** Which moments are recorded. */
-export interface Recording { times_s: number[]; bytes: number }
+export interface Recording {
+  /** Of its frames. */
+  times_s: number[];
+  /** Of memory. */
+  bytes: number;
+}
 
 /** A key figure of a run, as in its report. */
 export interface Figure {
+  /** Of results.json. */
   key: string;
+  /** For people. */
   name: string;
+  /** A number or a text; null: there is none. */
   value: number | string | null;
+  /** Of a number. */
   unit: string;
+  /** How reports write the number. */
   format?: string;
+  /** What to know of it. */
   note?: string;
   /** Whether it needs attention. */
   alert?: boolean;
+  /** As in results.json. */
   kind?: string;
 }
 
-export interface Figures { figures: Figure[] }
+export interface Figures {
+  /** In the order of the report. */
+  figures: Figure[];
+}
 
 /** A result file of the run so far. */
 export interface ExportFile {
+  /** Of the file. */
   name: string;
   /** Null: not written yet for this moment of the run. */
   bytes: number | null;
+  /** For people. */
   what: string;
 }
 
-export interface ExportFiles { files: ExportFile[] }
+export interface ExportFiles {
+  /** Those that there can be. */
+  files: ExportFile[];
+}
 
 /** What talus replay reads: the scene, and the actions with the steps before which they came. */
 export type Journal = object;
@@ -560,6 +769,7 @@ export type CalibrationPhase = "design" | "search" | "check";
 export interface CalibrationRun {
   /** As parameters. */
   values: number[];
+  /** For which it was made. */
   phase: CalibrationPhase;
   /** Null: the run failed. */
   misfit: number | null;
@@ -567,11 +777,15 @@ export interface CalibrationRun {
 
 /** What the best run has for an observation. */
 export interface CalibratedObservation {
+  /** Of the observation. */
   name: string;
+  /** Of the values. */
   unit: string;
+  /** In the field. */
   observed: number;
   /** A standard deviation. */
   uncertainty: number;
+  /** Of the computed value against the observed one. */
   is: "equal" | "at_least" | "below";
   /** Computed by the best run; null: nothing came there. */
   best: number | null;
@@ -580,25 +794,50 @@ export interface CalibratedObservation {
 }
 
 /** What is varied. */
-export interface CalibratedParameter { key: string; label: string; unit: string; low: number; high: number }
+export interface CalibratedParameter {
+  /** Of the parameter. */
+  key: string;
+  /** For people. */
+  label: string;
+  /** Of the values. */
+  unit: string;
+  /** Least value. */
+  low: number;
+  /** Greatest value. */
+  high: number;
+}
 
 /** By the emulators over the first two parameters, from low to high; one row where there is one parameter. */
 export interface MisfitMap {
+  /** Values of the first parameter. */
   columns: number;
+  /** Values of the second. */
   rows: number;
   /** By rows of the second. */
   misfit: Column;
 }
 
 /** Of the runs so far. */
-export interface BestRun { run: number; values: number[]; misfit: number }
+export interface BestRun {
+  /** Its number. */
+  run: number;
+  /** As parameters. */
+  values: number[];
+  /** Its misfit. */
+  misfit: number;
+}
 
 /** What a calibration found. */
 export interface FoundParameter {
+  /** Of the parameter. */
   key: string;
+  /** Value of the best run. */
   best: number;
+  /** Of the posterior. */
   median: number;
+  /** Low end of the 95 % interval. */
   low_95: number;
+  /** High end of the 95 % interval. */
   high_95: number;
   /** Of the range that it was given, 0 to 1. */
   share_of_prior_width: number;
@@ -608,13 +847,17 @@ export interface FoundParameter {
 export interface CalibrationResult {
   /** More runs would have told nothing new. */
   settled: boolean;
+  /** Share of the check runs within the 95 % interval of the emulators; null: there were none. */
   checks_within_95: number | null;
+  /** As varied. */
   parameters: FoundParameter[];
+  /** Limitations, a sentence each. */
   warnings: string[];
 }
 
 /** The calibration that runs, or the last one. */
 export interface CalibrationStatus {
+  /** Idle: none has been started. */
   state: CalibrationState;
   /** Why this scene cannot be calibrated; null: it can. */
   why_not: string | null;
@@ -622,10 +865,15 @@ export interface CalibrationStatus {
   by: string | null;
   /** Why it failed, or what could not be written; empty. */
   message: string;
+  /** That it fits. */
   observations: CalibratedObservation[];
+  /** That are varied. */
   parameters: CalibratedParameter[];
+  /** Null: it does not run. */
   phase: CalibrationPhase | null;
+  /** Of the scene's own model. */
   runs_at_most: number;
+  /** So far. */
   runs_failed: number;
   /** Made with the depth-averaged model, which searches; as runs. */
   fast_runs: CalibrationRun[];
@@ -637,7 +885,9 @@ export interface CalibrationStatus {
   runs: CalibrationRun[];
   /** Misfit over the first two parameters, by emulators, from low to high; null: none yet. */
   map: MisfitMap | null;
+  /** Of the runs so far; null: none has a misfit. */
   best: BestRun | null;
+  /** Null: it is not done. */
   result: CalibrationResult | null;
 }
 
@@ -645,12 +895,15 @@ export interface CalibrationStatus {
 export interface VariedKey {
   /** Of a parameter of the scene. */
   key: string;
+  /** Least value. */
   low: number;
+  /** Greatest value. */
   high: number;
 }
 
 /** Body of POST /api/calibration. */
 export interface WantedCalibration {
+  /** What varies. */
   parameters: VariedKey[];
   /** At most so many, 8 to 2000 with two parameters; default: 100. With search_with 3 to 2000, default: 10. */
   runs?: number;
@@ -668,10 +921,13 @@ export type QuantityName = (typeof quantityNames)[number];
 
 /** A map of a finished ensemble. */
 export interface EnsembleMap {
+  /** Of the map, in its route. */
   name: string;
+  /** For people. */
   title: string;
   /** Of the grid's values. */
   unit: string;
+  /** What it shows of the runs. */
   kind: "probability" | "percentile" | "zones";
   /** The map of a single run that it counts. */
   of: "peak_depth" | "peak_speed" | "peak_pressure" | "arrival_time" | "deposit_depth" | "intensity";
@@ -679,6 +935,7 @@ export interface EnsembleMap {
   description: string;
   /** Of a probability of depth, speed or pressure. */
   threshold: number | null;
+  /** Null likewise. */
   threshold_unit: string | null;
   /** In %. */
   percentile: number | null;
@@ -690,6 +947,7 @@ export interface EnsembleMap {
 
 /** What an ensemble varied. */
 export interface EnsembleFactor {
+  /** Of the scene file. */
   key: string;
   /** For people: uniform from 0.2 to 0.5. */
   distribution: string;
@@ -697,22 +955,36 @@ export interface EnsembleFactor {
 
 /** A finished ensemble of this scene whose maps can be shown. */
 export interface Ensemble {
+  /** In routes. */
   id: string;
   /** Of its folder. */
   name: string;
   /** Complete ones, which the maps count. */
   runs: number;
+  /** Runs that failed. */
   failed: number;
+  /** What varied. */
   factors: EnsembleFactor[];
   /** Whether it was computed on this scene's terrain file. */
   same_terrain: boolean;
+  /** That can be shown. */
   maps: EnsembleMap[];
 }
 
-export interface Ensembles { ensembles: Ensemble[] }
+export interface Ensembles {
+  /** In the order in which they were given. */
+  ensembles: Ensemble[];
+}
 
 /** Columns of equal length. */
-export interface DepthAveragedFront { chainage_m: Column; arrival_time_s: Column; front_velocity_mps: Column }
+export interface DepthAveragedFront {
+  /** Along the flow path. */
+  chainage_m: Column;
+  /** Of the front. */
+  arrival_time_s: Column;
+  /** There. */
+  front_velocity_mps: Column;
+}
 
 /** Of the present setup, from time 0 to its end. */
 export interface DepthAveragedResult {
@@ -720,22 +992,27 @@ export interface DepthAveragedResult {
   end_s: number;
   /** False: it ended before debris rested or the scene's end time; see stop_reason. */
   complete: boolean;
+  /** One sentence. */
   stop_reason: string;
+  /** Whether it can be relied on. */
   verdict: Verdict;
   /** Of its steps. */
   wall_time_s: number;
   /** Of all of it. */
   processor_time_s: number;
+  /** Edge of its cells. */
   grid_cell_m: number;
   /** As talus run --model depth_averaged has it for the same setup. */
   hash: string;
   /** What the model leaves out. */
   notes: string[];
+  /** Over chainage. */
   front: DepthAveragedFront;
 }
 
 /** The depth-averaged model of the present setup of a scenario. Nothing of it is recorded. */
 export interface DepthAveragedStatus {
+  /** Its name. */
   scenario: ScenarioName;
   /** Refused: the model does not have something of the setup, which message names. */
   state: "off" | "waiting" | "running" | "done" | "refused" | "failed";
@@ -749,9 +1026,13 @@ export interface DepthAveragedStatus {
 
 /** A quantity of both models: particles so far, the other model by the same time and at its end. */
 export interface DepthAveragedRow {
+  /** Which quantity. */
   key: "front_velocity" | "front_arrival" | "front_chainage" | "run_out" | "affected_area" | "peak_depth" | "peak_speed" | "peak_pressure";
+  /** For people. */
   name: string;
+  /** Of the values. */
   unit: string;
+  /** To be shown. */
   decimals: number;
   /** So far. */
   particles: number | null;
@@ -759,13 +1040,17 @@ export interface DepthAveragedRow {
   depth_averaged_by_then: number | null;
   /** Of the whole run. */
   depth_averaged: number | null;
+  /** In the field; null: it was not. */
   observed: number | null;
 }
 
 /** Ground covered by then. */
 export interface AffectedArea {
+  /** By both models. */
   both_m2: number;
+  /** By particles alone. */
   particles_only_m2: number;
+  /** By the depth-averaged model alone. */
   depth_averaged_only_m2: number;
   /** Null: neither covers any. */
   intersection_over_union: number | null;
@@ -777,6 +1062,7 @@ export interface DepthAveragedComparison {
   time_s: number;
   /** The particles' run is over: both are compared as a whole. */
   over: boolean;
+  /** A quantity each. */
   rows: DepthAveragedRow[];
   /** Ground covered deeper than this is affected. */
   least_depth_m: number;
@@ -787,7 +1073,10 @@ export interface DepthAveragedComparison {
 }
 
 /** Body of POST /api/depth_averaged. */
-export interface WantedDepthAveraged { on: boolean }
+export interface WantedDepthAveraged {
+  /** Compute it, or discard it. */
+  on: boolean;
+}
 
 /** Body of POST /api/scenarios. */
 export interface WantedCopy {
@@ -798,12 +1087,20 @@ export interface WantedCopy {
 }
 
 /** Values of a trigger's message, by key with its unit. */
-export interface TriggerValues { volume_m3?: number; pore_pressure_ratio?: number; discharge_m3ps?: number }
+export interface TriggerValues {
+  /** Of the release. */
+  volume_m3?: number;
+  /** Of the debris. */
+  pore_pressure_ratio?: number;
+  /** Of the gauge. */
+  discharge_m3ps?: number;
+}
 
 /** Body of POST /api/trigger. */
 export interface TriggerMessage {
   /** Name of a trigger of the scene. */
   trigger: string;
+  /** Absent: those of the scene. */
   values?: TriggerValues;
   /** When it was measured, UTC, such as 2026-11-24T14:03:00Z; default: now. */
   time?: string;
@@ -815,32 +1112,53 @@ export interface TriggerMessage {
 export interface TriggerAnswer {
   /** What has happened, for people. */
   done: string;
+  /** That has started or goes on; null: none. */
   scenario: ScenarioName | null;
+  /** A run has started. */
   started: boolean;
 }
 
 /** The last value of a trigger's gauge. */
-export interface GaugeValue { discharge_m3ps: number; received_at: string }
+export interface GaugeValue {
+  /** As received. */
+  discharge_m3ps: number;
+  /** UTC. */
+  received_at: string;
+}
 
 /** A run that a trigger started; times of day are UTC. */
 export interface TriggeredRun {
+  /** Its name. */
   scenario: ScenarioName;
+  /** Name of the trigger. */
   trigger: string;
+  /** Empty: not known. */
   source: "HTTP" | "MQTT" | "";
+  /** UTC. */
   received_at: string;
+  /** As the message gave it; may be empty. */
   reason: string;
+  /** Of the message. */
   values: TriggerValues;
+  /** Last value of its gauge; null: none. */
   reading: GaugeValue | null;
 }
 
 /** An alarm that a run raised. */
 export interface RaisedAlarm {
+  /** Its name. */
   scenario: ScenarioName;
+  /** Name of the alarm. */
   alarm: string;
+  /** What is so, for people. */
   sentence: string;
+  /** Of the scene file; may be empty. */
   message: string;
+  /** Simulated time at which it was raised. */
   time_s: number;
+  /** Simulated time at which the front is at the place, or what is warned of happens; null: not known. */
   expected_s: number | null;
+  /** Steps taken until then. */
   step: number;
   /** Of the state after that step. */
   hash: string;
@@ -852,16 +1170,23 @@ export interface RaisedAlarm {
 
 /** A trigger of the scene. */
 export interface Trigger {
+  /** Of the scene file. */
   name: string;
   /** Largest values. */
   limits: TriggerValues;
 }
 
 /** What came of a message. */
-export interface AlertNote { at: string; sentence: string }
+export interface AlertNote {
+  /** UTC. */
+  at: string;
+  /** For people. */
+  sentence: string;
+}
 
 /** Where messages of triggers can come from. */
 export interface Listening {
+  /** There is a token of triggers. */
   http: boolean;
   /** Of the connection to the broker; null: none. */
   mqtt: string | null;
@@ -871,18 +1196,31 @@ export interface Listening {
 export interface Alerts {
   /** Where messages of triggers can come from. */
   listening: Listening;
+  /** Of the scene. */
   triggers: Trigger[];
+  /** Of all scenarios. */
   runs: TriggeredRun[];
+  /** Of all runs. */
   alarms: RaisedAlarm[];
   /** The last 20: runs started, messages refused, what was not delivered. */
   notes: AlertNote[];
 }
 
 /** How other computers reach the server. */
-export interface SharedLink { host: string; encrypted: boolean; viewer_url: string; controller_url: string }
+export interface SharedLink {
+  /** Address or name, with the port. */
+  host: string;
+  /** With TLS. */
+  encrypted: boolean;
+  /** Link for viewers. */
+  viewer_url: string;
+  /** Link for controllers. */
+  controller_url: string;
+}
 
 /** Whether other computers reach the server, and by which addresses they could. */
 export interface Share {
+  /** Null: they do not. */
   shared: SharedLink | null;
   /** Of this computer. */
   addresses: string[];

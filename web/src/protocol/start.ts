@@ -3,31 +3,61 @@ import type { Journal, Parameter, Point, Role, VariedKey } from "./messages";
 
 /** A scene that can be opened. */
 export interface KnownScene {
+  /** In requests. */
   id: string;
+  /** Of the scene. */
   title: string;
+  /** Recent: opened before; own: made here. */
   kind: "recent" | "own" | "builtin";
+  /** Null: it is built in. */
   file: string | null;
+  /** UTC; null: never. */
   opened_at: string | null;
   /** Its file is gone. */
   missing: boolean;
 }
 
 /** A session that can be opened. */
-export interface SavedSession { id: string; name: string; title: string; saved_at: string; scenarios: number }
+export interface SavedSession {
+  /** In requests. */
+  id: string;
+  /** As it was saved. */
+  name: string;
+  /** Of its scene. */
+  title: string;
+  /** UTC. */
+  saved_at: string;
+  /** Number of them. */
+  scenarios: number;
+}
 
 /** A scenario of a session file. */
 export interface SavedScenario {
+  /** A to F. */
   name: string;
   /** Given by people. */
   title: string;
+  /** As GET .../journal. */
   journal: Journal;
 }
 
 /** The journal of every scenario, all of one scene. Opened, each is replayed, and its hash compared with the saved one. */
-export interface SessionFile { talus_session: 1; name: string; title: string; saved_at: string; scenarios: SavedScenario[] }
+export interface SessionFile {
+  /** Version of the format. */
+  talus_session: 1;
+  /** As it was saved. */
+  name: string;
+  /** Of its scene. */
+  title: string;
+  /** UTC. */
+  saved_at: string;
+  /** In the order of their names. */
+  scenarios: SavedScenario[];
+}
 
 /** Body of POST /api/sessions. */
 export interface WantedSession {
+  /** Under which it is saved. */
   name: string;
   /** A session file; absent: the open session. */
   file?: object;
@@ -59,7 +89,14 @@ export interface UploadLimits {
 export type DraftRole = "terrain" | "release" | "buildings" | "orthophoto" | "bundle";
 
 /** A file that was uploaded. */
-export interface DraftFile { name: string; bytes: number; kind: "raster" | "polygons" | "other" }
+export interface DraftFile {
+  /** As uploaded. */
+  name: string;
+  /** Of the file. */
+  bytes: number;
+  /** What it holds. */
+  kind: "raster" | "polygons" | "other";
+}
 
 /** What is known of the terrain as it was uploaded. */
 export interface MendingOfTerrain {
@@ -77,7 +114,9 @@ export interface MendingOfTerrain {
 export interface DraftTerrain {
   /** Why it cannot be the terrain of a scene. */
   problem: string | null;
+  /** Of cells. */
   columns: number;
+  /** Of cells. */
   rows: number;
   /** Empty: none is stated. */
   crs: string;
@@ -89,6 +128,7 @@ export interface DraftTerrain {
   height_unit_m: number;
   /** This and nodata_share: of a terrain without a problem. */
   cell_m?: number;
+  /** Of cells without a value. */
   nodata_share?: number;
   /** Lowest and highest. */
   elevation_m?: [number, number] | null;
@@ -100,6 +140,7 @@ export interface DraftTerrain {
 export interface Draft {
   /** By role. */
   files: Partial<Record<DraftRole, DraftFile>>;
+  /** Null: there is none yet. */
   terrain: DraftTerrain | null;
   /** That may still come. */
   bytes_left: number;
@@ -117,8 +158,11 @@ export interface Checked {
 
 /** Body of POST /api/draft/{id}/scene; thickness or volume, not both. */
 export interface WantedScene {
+  /** Of the scene. */
   title?: string;
+  /** Of the release. */
   thickness_m?: number | null;
+  /** Of the release. */
   volume_m3?: number | null;
   /** Outline of the release, in place of a file, in the reference system of the terrain. */
   scar?: Point[] | null;
@@ -130,37 +174,55 @@ export type JobKind = "ensemble" | "calibration" | "validation";
 
 /** An ensemble, a calibration or a validation in a process of its own. */
 export interface Job {
+  /** In routes. */
   id: string;
+  /** What it computes. */
   kind: JobKind;
+  /** Interrupted: the program ended meanwhile. */
   state: "waiting" | "running" | "cancelling" | "done" | "cancelled" | "interrupted" | "failed";
   /** Of its scene; of a validation which cases. */
   title: string;
   /** How it ended, where its state does not say all. */
   message: string;
+  /** UTC. */
   begun_at: string;
+  /** UTC; null: it has not. */
   ended_at: string | null;
   /** Runs, or cases of a validation. */
   done: number;
+  /** Of these. */
   failed: number;
   /** 0: not known yet. */
   count: number;
+  /** An estimate; null: not known. */
   wall_remaining_s: number | null;
   /** The command line that computes the same. */
   command: string;
+  /** Of its results. */
   folder: string;
   /** Link to its report, relative to the page. */
   report: string | null;
 }
 
 /** What a job may have at most. */
-export interface JobLimits { runs: number; ensemble_factors: number; calibration_factors: number }
+export interface JobLimits {
+  /** Of a job. */
+  runs: number;
+  /** Keys that an ensemble may vary. */
+  ensemble_factors: number;
+  /** Keys that a calibration may vary. */
+  calibration_factors: number;
+}
 
 /** What a job of a scene may vary. */
 export interface JobForm {
+  /** Of the scene. */
   title: string;
+  /** That may vary. */
   parameters: Parameter[];
   /** None: the scene cannot be calibrated. */
   observations: string[];
+  /** Of a job. */
   limits: JobLimits;
 }
 
@@ -168,40 +230,58 @@ export interface JobForm {
 export interface JobEstimate {
   /** Wall time of one run on all cores. */
   run_s: number | null;
+  /** About. */
   particles: number;
   /** Of one run. */
   memory_bytes: number;
+  /** Of this computer. */
   cores: number;
 }
 
 /** A case of the program. */
-export interface ValidationCase { name: string; title: string; quick: boolean }
+export interface ValidationCase {
+  /** In requests. */
+  name: string;
+  /** For people. */
+  title: string;
+  /** One of the quick cases. */
+  quick: boolean;
+}
 
-export interface ValidationCases { cases: ValidationCase[] }
+export interface ValidationCases {
+  /** In the order of their names. */
+  cases: ValidationCase[];
+}
 
 /** A job of many runs. */
 export interface WantedEnsemble {
+  /** Which job. */
   kind: "ensemble";
   /** Id of a scene. */
   scene: string;
   /** What varies. */
   factors: VariedKey[];
+  /** Absent: as the command has it. */
   runs?: number;
+  /** How values are drawn; absent: as the command has it. */
   design?: "latin_hypercube" | "monte_carlo" | "sobol" | "saltelli" | "morris";
 }
 
 /** A job that fits parameters to the scene's observations. */
 export interface WantedBackAnalysis {
+  /** Which job. */
   kind: "calibration";
   /** Id of a scene. */
   scene: string;
   /** What varies. */
   factors: VariedKey[];
+  /** Absent: as the command has it. */
   runs?: number;
 }
 
 /** A job that runs validation cases. */
 export interface WantedValidation {
+  /** Which job. */
   kind: "validation";
   /** The quick cases only. */
   quick?: boolean;
@@ -214,6 +294,7 @@ export type WantedJob = WantedEnsemble | WantedBackAnalysis | WantedValidation;
 
 /** What is being opened. */
 export interface Opening {
+  /** For people. */
   what: string;
   /** That is done, 0 to 1. */
   share: number;
@@ -223,7 +304,9 @@ export interface Opening {
 export interface StartPage {
   /** True. */
   available: boolean;
+  /** The session that is open; null: none. */
   open: { title: string } | null;
+  /** What is being opened; null: nothing. */
   opening: Opening | null;
   /** Why the last one could not be opened. */
   error: string | null;
@@ -231,12 +314,17 @@ export interface StartPage {
   count: number;
   /** About the session that is open, such as a result that differs from the saved one. */
   notes: string[];
+  /** With its version. */
   program: string;
+  /** What the token entitles to. */
   role: Role;
   /** Keeps own scenes and saved sessions. */
   folder?: string;
+  /** What a new scene may have. */
   uploads?: UploadLimits;
+  /** That can be opened. */
   scenes?: KnownScene[];
+  /** That can be opened. */
   sessions?: SavedSession[];
   /** Ensembles, calibrations and validations started here, newest first; null: there are none on this server. */
   jobs?: Job[] | null;
