@@ -99,15 +99,6 @@ TEST_F(Products, StyleLeavesZeroDepthAndThinDepositsTransparent) {
     EXPECT_THAT(test::read_text(folder_->path() / "arrival_time.qml"), Not(HasSubstr("alpha=\"0\"")));
 }
 
-std::vector<OGRFeatureUniquePtr> read_layer(GDALDataset& data, const char* name) {
-    std::vector<OGRFeatureUniquePtr> features;
-    OGRLayer* layer = data.GetLayerByName(name);
-    EXPECT_NE(layer, nullptr) << name;
-    if (layer == nullptr) return features;
-    for (auto& feature : layer) features.push_back(std::move(feature));
-    return features;
-}
-
 TEST_F(Products, MapsSayWhichRunTheyAreOf) {
     const GDALDatasetUniquePtr data(GDALDataset::Open(folder_->file("peak_depth.tif").c_str()));
     ASSERT_TRUE(data);
