@@ -188,16 +188,17 @@ class TalusAlgorithm(QgsProcessingAlgorithm):
 
     def thickness_column(self, fields, chosen):
         """The fields, of which the chosen one has the name by which talus finds it."""
-        if fields.lookupField(chosen) < 0:
+        at = fields.lookupField(chosen)  # in whatever case
+        if at < 0:
             names = ", ".join(field.name() for field in fields)
             raise QgsProcessingException(
                 f"{self.title_of('THICKNESS_ATTRIBUTE')}: {self.title_of('RELEASE')} has no attribute {chosen}; "
                 f"it has: {names}"
             )
         renamed = QgsFields()
-        for field in fields:
+        for k, field in enumerate(fields):
             copy = QgsField(field)
-            if field.name() == chosen:
+            if k == at:
                 copy.setName(THICKNESS_COLUMN)
             elif field.name().lower() == THICKNESS_COLUMN:
                 copy.setName(THICKNESS_COLUMN + "_not_used")

@@ -118,6 +118,7 @@ TEST_F(Products, QgisGetsTheGroundBelowTheMaps) {
     const std::string layers = test::read_text(folder_->path() / "results.qlr");
     EXPECT_GT(layers.find("name=\"Terrain, hillshade\""), layers.find("name=\"Intensity\"")) << "is at the bottom";
     EXPECT_THAT(layers, testing::HasSubstr("rasterrenderer type=\"hillshade\""));
+    EXPECT_THAT(layers, testing::HasSubstr("zoomedInResampler=\"bilinear\""));
 }
 
 TEST_F(Products, QgisDoesNotOpenTablesWithoutFeatures) {
