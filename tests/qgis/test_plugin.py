@@ -312,7 +312,8 @@ class Plugin(unittest.TestCase):
         self.assertTrue(all(QgsRasterLayer(results[name]).isValid() for name in maps))
         written = {name for name in os.listdir(output) if name.endswith(".tif")}
         self.assertEqual(written, {os.path.basename(results[name]) for name in maps} | {"terrain.tif"})
-        self.assertEqual(QgsVectorLayer(results["ZONES"]).renderer().type(), "categorizedSymbol")
+        zones = QgsVectorLayer(results["ZONES"])
+        self.assertEqual(zones.renderer().type(), "categorizedSymbol")
         odds = QgsVectorLayer(results["BUILDING_ODDS"])
         self.assertTrue(odds.isValid())
         (house,) = odds.getFeatures()
