@@ -185,7 +185,8 @@ class Ensemble(ManyRuns):
                 maps[name.replace(".", "_").upper()] = (name, title)
         for intensity in ("low", "medium", "high"):
             name = f"probability_intensity_{intensity}"
-            maps[name.upper()] = (name, f"Probability of {intensity} intensity" + ("" if intensity == "high" else " or higher"))
+            higher = "" if intensity == "high" else " or higher"
+            maps[name.upper()] = (name, f"Probability of {intensity} intensity{higher}")
         for quantity in ("peak_depth", "peak_speed", "peak_pressure", "arrival_time", "deposit_depth"):
             for level, words in self.PERCENTILES.items():
                 name = f"{quantity}_p{level}"

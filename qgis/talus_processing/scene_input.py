@@ -135,7 +135,8 @@ class TalusAlgorithm(QgsProcessingAlgorithm):
         return [OPTIONS.get(name, "--" + name.lower().replace("_", "-")), value] if value else []
 
     def title_of(self, name):
-        return f'"{self.parameterDefinition(name).description()}"'
+        """What the dialog calls a parameter, without explanations and units."""
+        return '"' + re.split(r"[,:;]| \(", self.parameterDefinition(name).description())[0] + '"'
 
     def run_talus(self, arguments, feedback):
         """Runs the program; what it says is wrong is said in the words of the dialog."""
@@ -144,7 +145,7 @@ class TalusAlgorithm(QgsProcessingAlgorithm):
             option = OPTIONS.get(parameter.name(), "--" + parameter.name().lower().replace("_", "-"))
             named.setdefault(option, self.title_of(parameter.name()))
         if "--settings" in named:
-            named["--set"] = named["--settings"]
+            named["--set"] = named["--settings"] + ":"
         try:
             return run_program(arguments, feedback)
         except QgsProcessingException as error:
@@ -156,9 +157,11 @@ class TalusAlgorithm(QgsProcessingAlgorithm):
         definition = given if isinstance(given, QgsProcessingFeatureSourceDefinition) else None
         file = definition.source.valueAsString(context.expressionContext())[0] if definition else given
         layer = self.parameterAsString(parameters, "RELEASE_LAYER", context) if name == "RELEASE" else ""
-        if not isinstance(file, str) or QgsProcessingUtils.mapLayerFromString(file, context, False) or "|" in file:
+        if not isinstance(file, str) or not os.path.exists(file):  # a layer, or a file with the name of its layer
             if layer:
-                raise QgsProcessingException(f"{self.title_of('RELEASE_LAYER')}: is for a file; {self.title_of(name)} is a layer")
+                raise QgsProcessingException(
+                    f"{self.title_of('RELEASE_LAYER')}: is for a file; {self.title_of(name)} is a layer"
+                )
             return parameters
         found = QgsProviderRegistry.instance().querySublayers(file)
         polygons = {
@@ -168,7 +171,9 @@ class TalusAlgorithm(QgsProcessingAlgorithm):
         }  # fmt: skip
         names = ", ".join(polygons)
         if layer and layer not in polygons:
-            raise QgsProcessingException(f"{self.title_of('RELEASE_LAYER')}: {file} has no layer of polygons {layer}; it has: {names}")
+            raise QgsProcessingException(
+                f"{self.title_of('RELEASE_LAYER')}: {file} has no layer of polygons {layer}; it has: {names}"
+            )
         if not layer and len(polygons) > 1:
             where = f"in {self.title_of('RELEASE_LAYER')}" if name == "RELEASE" else "as FILE|layername=NAME"
             raise QgsProcessingException(
@@ -183,15 +188,17 @@ class TalusAlgorithm(QgsProcessingAlgorithm):
 
     def thickness_column(self, fields, chosen):
         """The fields, of which the chosen one has the name by which talus finds it."""
-        if fields.lookupField(chosen) < 0:
+        at = fields.lookupField(chosen)  # in whatever case
+        if at < 0:
             names = ", ".join(field.name() for field in fields)
             raise QgsProcessingException(
-                f"{self.title_of('THICKNESS_ATTRIBUTE')}: {self.title_of('RELEASE')} has no attribute {chosen}; it has: {names}"
+                f"{self.title_of('THICKNESS_ATTRIBUTE')}: {self.title_of('RELEASE')} has no attribute {chosen}; "
+                f"it has: {names}"
             )
         renamed = QgsFields()
-        for field in fields:
+        for k, field in enumerate(fields):
             copy = QgsField(field)
-            if field.name() == chosen:
+            if k == at:
                 copy.setName(THICKNESS_COLUMN)
             elif field.name().lower() == THICKNESS_COLUMN:
                 copy.setName(THICKNESS_COLUMN + "_not_used")
@@ -236,7 +243,8 @@ class TalusAlgorithm(QgsProcessingAlgorithm):
         if terrain.dataProvider().name() != "gdal":
             raise QgsProcessingException(f"{terrain.name()}: is no raster in a file; save it as a GeoTIFF first")
         dem = QgsProviderRegistry.instance().decodeUri("gdal", terrain.source()).get("path", terrain.source())
-        given = [name for name in ("THICKNESS", "THICKNESS_ATTRIBUTE", "VOLUME") if self.parameterAsString(parameters, name, context)]
+        one_of = ("THICKNESS", "THICKNESS_ATTRIBUTE", "VOLUME")
+        given = [name for name in one_of if self.parameterAsString(parameters, name, context)]
         if len(given) > 1:
             titles = " and ".join(self.title_of(name) for name in given)
             raise QgsProcessingException(f"{titles} are given; give one of them")
@@ -270,11 +278,14 @@ class TalusAlgorithm(QgsProcessingAlgorithm):
             value = self.parameterAsString(parameters, name, context)
             if value:
                 settings.append(f"{key}={value}")
-                self.named[f"--set {key}={value}: {key}"] = self.named[f"--set {key}={value}"] = self.title_of(name)
+                self.named[key] = self.title_of(name)
         arguments = [file] if file else []
         for setting in settings:
             arguments += ["--set", setting]
-        return arguments + self.option(parameters, "THREADS", context)
+        threads = self.option(parameters, "THREADS", context)
+        if threads:
+            self.named["solver.thread_count"] = self.title_of("THREADS")
+        return arguments + threads
 
     def output_folder(self, parameters, context):
         folder = self.parameterAsString(parameters, "OUTPUT", context).rstrip("/")

@@ -71,7 +71,7 @@ void add_maps_over_time(const scene::Scene& scene, const run::RunResult& result,
         const double greatest = report::greatest(result.observation.maps.*map.grid) * map.factor;
         std::vector<LayerDefinition::Frame> frames;
         for (std::size_t k = 0; k < times.size(); k += step) {
-            frames.push_back({fmt::format("{:.6g} s", times[k]),
+            frames.push_back({fmt::format("{} s", std::round(100 * times[k]) / 100),
                               has("geotiff") ? fmt::format("./series/{}.tif", quantity.name)
                                              : fmt::format("NETCDF:\"./series/maps.nc\":{}", quantity.name),
                               qgis_style(map, greatest, k + 1), times[k],

@@ -23,7 +23,7 @@ HazardMap map(const char* file, const char* title, const char* description, cons
 }
 
 /// A QGIS 3 layer style around the element of a renderer.
-std::string layer_style(const std::string& renderer) {
+std::string layer_style(const std::string& renderer, const std::string& resampling = "") {
     return R"qml(<!DOCTYPE qgis PUBLIC 'http://mrcc.com/qgis.dtd' 'SYSTEM'>
 <qgis version="3.22.0" styleCategories="AllStyleCategories" hasScaleBasedVisibilityFlag="0">
   <customproperties>
@@ -33,7 +33,8 @@ std::string layer_style(const std::string& renderer) {
 )qml" + renderer +
            R"qml(    <brightnesscontrast brightness="0" contrast="0" gamma="1"/>
     <huesaturation saturation="0" grayscaleMode="0" colorizeOn="0"/>
-    <rasterresampler maxOversampling="2"/>
+    <rasterresampler maxOversampling="2")qml" +
+           resampling + R"qml(/>
     <resamplingStage>resamplingFilter</resamplingStage>
   </pipe>
   <blendMode>0</blendMode>
@@ -148,11 +149,14 @@ std::string qgis_style(const HazardMap& map, double largest, std::size_t band) {
 }
 
 std::string qgis_hillshade_style() {
+    // Without, the shade of a map that is zoomed in is that of the steps between the cells.
+    const char* const smooth = R"( zoomedInResampler="bilinear" zoomedOutResampler="bilinear")";
     return layer_style(
         R"qml(    <rasterrenderer type="hillshade" band="1" azimuth="315" angle="45" zfactor="1" multidirection="0" opacity="1" alphaBand="-1" nodataColor="">
       <rasterTransparency/>
     </rasterrenderer>
-)qml");
+)qml",
+        smooth);
 }
 
 }  // namespace talus::report

@@ -72,9 +72,9 @@ StateJson identity_of(const scene::Scene& scene, const Run& run) {
             {"inputs", inputs_of(scene)}};
 }
 
-std::string text_of(const StateJson& json, const std::string& key) {
-    const auto found = json.find(key);
-    if (found == json.end()) return "";
+std::string text_of(const StateJson& object, const std::string& key) {
+    const auto found = object.find(key);
+    if (found == object.end()) return "";
     return found->is_string() ? found->get<std::string>() : found->dump();
 }
 

@@ -27,15 +27,18 @@ import numpy as np
 from osgeo import gdal, ogr, osr
 from qgis.core import (
     QgsApplication,
+    QgsDateTimeRange,
     QgsLayerDefinition,
     QgsProcessingContext,
     QgsProcessingException,
     QgsProcessingFeedback,
     QgsProcessingFeatureSourceDefinition,
+    QgsProcessingOutputRasterLayer,
     QgsProject,
     QgsRasterLayer,
     QgsVectorLayer,
 )
+from qgis.PyQt.QtCore import QDateTime, Qt
 
 gdal.UseExceptions()
 application = QgsApplication([], False)
@@ -70,17 +73,30 @@ def write_slope():
     raster = None
     boxes = {"scars": [(5, 10, 15, 20), (5, 1, 8, 3)], "houses": [(40, 12, 46, 18)]}
     for name, places in boxes.items():
-        data = ogr.GetDriverByName("GPKG").CreateDataSource(str(FOLDER / f"{name}.gpkg"))
-        layer = data.CreateLayer(name, reference, ogr.wkbPolygon)
-        layer.CreateField(ogr.FieldDefn("name", ogr.OFTString))
-        for left, below, right, above in places:
-            feature = ogr.Feature(layer.GetLayerDefn())
-            feature.SetField("name", f"{name} & {left}")
-            corners = [(left, below), (right, below), (right, above), (left, above), (left, below)]
-            text = ", ".join(f"{800000 + x} {820000 + y}" for x, y in corners)
-            feature.SetGeometry(ogr.CreateGeometryFromWkt(f"POLYGON (({text}))"))
-            layer.CreateFeature(feature)
-        data = None
+        write_boxes(f"{name}.gpkg", name, places)
+    write_boxes("several.gpkg", "old", [(5, 1, 8, 3)])
+    write_boxes("several.gpkg", "new", [(5, 10, 15, 20)])
+
+
+def write_boxes(file, name, places):
+    """A layer of polygons; the first of them is 2 m deep, the others are 1 m."""
+    reference = osr.SpatialReference()
+    reference.ImportFromEPSG(32650)
+    there = (FOLDER / file).exists()
+    data = ogr.Open(str(FOLDER / file), 1) if there else ogr.GetDriverByName("GPKG").CreateDataSource(str(FOLDER / file))
+    layer = data.CreateLayer(name, reference, ogr.wkbPolygon)
+    layer.CreateField(ogr.FieldDefn("name", ogr.OFTString))
+    for field in ("depth", "thickness_m"):
+        layer.CreateField(ogr.FieldDefn(field, ogr.OFTReal))
+    for k, (left, below, right, above) in enumerate(places):
+        feature = ogr.Feature(layer.GetLayerDefn())
+        feature.SetField("name", f"{name} & {left}")
+        feature.SetField("depth", 1 if k else 2)
+        feature.SetField("thickness_m", 7)
+        corners = [(left, below), (right, below), (right, above), (left, above), (left, below)]
+        text = ", ".join(f"{800000 + x} {820000 + y}" for x, y in corners)
+        feature.SetGeometry(ogr.CreateGeometryFromWkt(f"POLYGON (({text}))"))
+        layer.CreateFeature(feature)
 
 
 write_slope()
@@ -167,7 +183,8 @@ class Plugin(unittest.TestCase):
         self.assertEqual(
             names,
             ["Chainage, m", "Flow path", "Buildings", "Release", "Deposit", "Inundation", "Intensity zones",
-             "Peak depth", "Peak speed", "Peak dynamic pressure", "Arrival time", "Deposit depth", "Intensity"],
+             "Peak depth", "Peak speed", "Peak dynamic pressure", "Arrival time", "Deposit depth", "Intensity",
+             "Terrain, hillshade"],
         )  # fmt: skip
         opened = {node.name(): node.layer() for node in group.children()}
         self.assertTrue(all(layer.isValid() for layer in opened.values()))
@@ -189,6 +206,57 @@ class Plugin(unittest.TestCase):
         self.assertTrue(loaded, message)
         for layer in project.mapLayers().values():
             self.assertTrue(layer.isValid() and layer.source().startswith(moved), layer.source())
+
+    def test_opens_maps_over_time_for_the_temporal_controller(self):
+        project = QgsProject()
+        results = run("run", layers(MODEL=2, SERIES=True, SERIES_INTERVAL=2, OUTPUT=new_output("series")), project)
+        (root,) = project.layerTreeRoot().children()
+        group = root.findGroup("Depth over time")
+        self.assertFalse(group.itemVisibilityChecked())
+        opened = [node.layer() for node in group.children()]
+        names = [layer.name() for layer in opened]
+        self.assertEqual(names[::3], ["6 s", "0 s"])  # between them, the first step after 2 and 4 s
+        later = names[2:0:-1]
+        self.assertEqual([layer.renderer().band() for layer in opened], [4, 3, 2, 1])
+        self.assertEqual({layer.source() for layer in opened}, {results["DEPTH_OVER_TIME"]})
+        for second, shown in ((0, "0 s"), (3, later[0]), (5, later[1]), (7, "6 s")):
+            begin = QDateTime.fromString(f"2000-01-01T00:00:0{second}Z", Qt.ISODate)
+            moment = QgsDateTimeRange(begin, begin.addMSecs(500))
+            seen = [la.name() for la in opened if la.temporalProperties().isVisibleInTemporalRange(moment)]
+            self.assertEqual(seen, [shown])
+        self.assertEqual(QgsRasterLayer(results["SPEED_OVER_TIME"]).bandCount(), 4)
+
+    def test_opens_no_tables_without_features(self):
+        project = QgsProject()
+        run("run", layers(MODEL=2, BUILDINGS=None, OUTPUT=new_output("no_houses")), project)
+        names = {layer.name() for layer in project.mapLayers().values()}
+        self.assertNotIn("Buildings", names)
+        self.assertIn("Release", names)
+        tables = [layer for layer in project.mapLayers().values() if isinstance(layer, QgsVectorLayer)]
+        self.assertEqual([table.name() for table in tables if table.featureCount() == 0], [])
+
+    def test_takes_thickness_from_an_attribute(self):
+        # Of the slope: sqrt(1.25) m2 per m2 in plan.
+        for attribute, volume in (("depth", (2 * 100 + 1 * 6) * 1.25**0.5), ("thickness_m", 7 * 106 * 1.25**0.5)):
+            given = {"THICKNESS": None, "THICKNESS_ATTRIBUTE": attribute, "OUTPUT": new_output("attribute")}
+            run("run", layers(LOAD=False, MODEL=2, **given))
+            totals = json.loads((FOLDER / "attribute/manifest.json").read_text())
+            released = totals["results"]["volumes"]["released_m3"]
+            self.assertAlmostEqual(released / volume, 1, delta=0.1)
+
+    def test_takes_a_layer_of_a_file_that_has_several(self):
+        several = {"RELEASE": str(FOLDER / "several.gpkg"), "OUTPUT": new_output("one_of_several")}
+        with self.assertRaisesRegex(
+            QgsProcessingException,
+            '"Release areas": .*several.gpkg has 2 layers of polygons; '
+            'name one in "Layer of the release areas": old, new',
+        ):
+            run("newscene", layers(**several))
+        with self.assertRaisesRegex(QgsProcessingException, "has no layer of polygons odd; it has: old, new"):
+            run("newscene", layers(RELEASE_LAYER="odd", **several))
+        run("newscene", layers(RELEASE_LAYER="new", **several))
+        scars = QgsVectorLayer(several["OUTPUT"] + "_layers/release.gpkg")
+        self.assertEqual([f["name"] for f in scars.getFeatures()], ["new & 5"])
 
     def test_cancelling_keeps_the_results_so_far(self):
         log, output = Log(), new_output("cancelled")
@@ -236,7 +304,17 @@ class Plugin(unittest.TestCase):
         self.assertEqual(len(opened), len(project.mapLayers()), "two layers have one name")
         self.assertEqual(opened["Hazard zones"].renderer().type(), "paletted")
         self.assertEqual(opened["Hazard zones, polygons"].renderer().type(), "categorizedSymbol")
-        odds = QgsVectorLayer(output + "/buildings.gpkg|layername=buildings")
+        algorithm = QgsApplication.processingRegistry().algorithmById("talus:ensemble")
+        declared = {output.name(): output for output in algorithm.outputDefinitions()}
+        maps = [name for name in results if isinstance(declared[name], QgsProcessingOutputRasterLayer)]
+        for name in ("PROBABILITY_DEPTH_0_5M", "PROBABILITY_SPEED_5MPS", "PEAK_DEPTH_P95", "HAZARD_ZONES"):
+            self.assertIn(name, maps)
+        self.assertTrue(all(QgsRasterLayer(results[name]).isValid() for name in maps))
+        written = {name for name in os.listdir(output) if name.endswith(".tif")}
+        self.assertEqual(written, {os.path.basename(results[name]) for name in maps} | {"terrain.tif"})
+        zones = QgsVectorLayer(results["ZONES"])
+        self.assertEqual(zones.renderer().type(), "categorizedSymbol")
+        odds = QgsVectorLayer(results["BUILDING_ODDS"])
         self.assertTrue(odds.isValid())
         (house,) = odds.getFeatures()
         self.assertTrue(0 <= house["probability_hit"] <= 1)
@@ -256,7 +334,12 @@ class Plugin(unittest.TestCase):
         for given, sentence in (
             ({"TERRAIN": str(FOLDER / "dem.tif")}, "needs a terrain and release areas"),
             (layers(SCENE=str(FOLDER / "scene.toml")), "give one or the other"),
-            (layers(SETTINGS="material.colour=1"), "unknown key \"colour\""),
+            (layers(SETTINGS="material.colour=1"), "^\"Other values\": material.colour=1: unknown key \"colour\""),
+            (layers(FRICTION=20), "^\"Friction coefficient\" = 20 is refused; it must be a number from 0 to 10"),
+            (layers(VOLUME=50), "^\"Thickness of the release\" and \"or its volume\" are given; give one"),
+            (layers(THICKNESS=None, THICKNESS_ATTRIBUTE="colour"), "\"Release areas\" has no attribute colour;"),
+            (layers(THICKNESS=2000), "thickness 2000 is refused"),
+            (layers(THREADS=9999), "^\"Threads\" = 9999 is refused"),
         ):
             with self.assertRaisesRegex(QgsProcessingException, sentence):
                 run("run", {**given, **output})
