@@ -60,6 +60,14 @@ def number(name: str, value: object, *, above: float = -math.inf, most: float = 
     return found
 
 
+def time(name: str, value: object) -> float:
+    """Simulated time, s."""
+    found = number(name, value)
+    if found < 0:
+        raise InputError(f"{name} = {short(value)}: must be 0 or more")
+    return found
+
+
 def raster(name: str, value: object) -> np.ndarray[Any, np.dtype[np.float32]]:
     """Real numbers in rows and columns."""
     found = _real(name, value)
@@ -83,7 +91,7 @@ def grid(extent: object, cell: float) -> tuple[float, float, int, int]:
     """West and south edge, columns and rows of whole cells between the edges of `extent`."""
     edges = np.asarray(_real("extent", extent), np.float64)
     if edges.shape != (4,) or not np.isfinite(edges).all() or not (edges[0] < edges[2] and edges[1] < edges[3]):
-        raise InputError(f"extent = {short(extent)}: must be west, south, east and north edge in m, west below east, south below north")
+        raise InputError(f"extent = {short(extent)}: must be west, south, east and north edge in m, in rising order")
     sizes = []
     for name, low, high in (("columns", edges[0], edges[2]), ("rows", edges[1], edges[3])):
         cells = (high - low) / cell

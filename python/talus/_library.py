@@ -197,7 +197,10 @@ class Caller:
     def wait(self) -> None:
         """Until no call is being made."""
         if not self._at_rest:
-            _until_done(self._threads.submit(int))
+            turn = self._threads.submit(int)
+            # Where the collector finds all this in a cycle, the thread has ended before, with what it was given done.
+            while not concurrent.futures.wait([turn], 0.1).done and any(thread.is_alive() for thread in self._threads._threads):
+                pass
             self._at_rest = True
 
     def __call__(

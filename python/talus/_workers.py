@@ -94,6 +94,9 @@ def serve() -> None:
             answer = work(job)
         except Exception as failure:  # told to whoever asked
             error = failure
-        pickle.dump((answer, error), answers)
-        answers.flush()
+        try:
+            pickle.dump((answer, error), answers)
+            answers.flush()
+        except BrokenPipeError:
+            os._exit(1)  # whoever asked is gone
 

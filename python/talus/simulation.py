@@ -183,7 +183,7 @@ class Simulation:
 
     def advance(self, time: float, progress: Progress | None = None) -> Phase:
         """Takes steps until `time`, s, or until the run is over."""
-        handle, end = self._handle, arguments.number("time", time)
+        handle, end = self._handle, arguments.time("time", time)
         self._calls(lambda watch: lib.call("talus_advance", handle, end, watch), progress)
         return self.phase
 

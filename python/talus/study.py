@@ -61,8 +61,9 @@ class Result:
         filled = [found for found in self.maps.values() if np.isfinite(found.values).any()]
         if not filled:
             return xarray.Dataset(attrs={"crs": self.crs})
-        cell = self.maps["peak_depth"].cell
-        extent = union([found for found in filled if found.cell == cell])
+        peak = self.maps["peak_depth"]
+        cell = peak.cell
+        extent = union([found for found in filled if found.cell == cell] or [peak])
         placed = {found.name: found.on_grid(extent, cell).to_xarray() for found in filled}
         return xarray.Dataset(placed, attrs={"crs": self.crs})
 
@@ -124,7 +125,7 @@ def run(
     it; None: where that is a terminal."""
     bar = sys.stderr.isatty() if progress is None else progress
     if end_time is not None:
-        end_time = arguments.number("end_time", end_time)
+        end_time = arguments.time("end_time", end_time)
     with Simulation(scene, _with_cell(settings, extent, cell_m)) as simulation:
         loaded = simulation.json("scene")
         end = loaded["end_time_s"]
@@ -231,8 +232,16 @@ def study(
     each on one thread. `extent`, `cell_m`: as of run(); with them Study.stack() has the maps of all runs in one array.
     Results are in the order of itertools.product; Result.settings says what each run had. Warns once if runs are beyond a
     limit (Result.verdict)."""
+    if not isinstance(values, Mapping):
+        raise InputError(f"values = {arguments.short(values)}: must be keys of the scene, each with a list of its values")
+    for key, chosen in values.items():
+        if isinstance(chosen, (str, bytes)) or not hasattr(chosen, "__len__") or not len(chosen):
+            raise InputError(f"values[{key!r}] = {arguments.short(chosen)}: must be a list of values, one at least")
+    arguments.settings(settings)
     base: dict[str, object] = {"solver.thread_count": 1, **(settings or {})}
     _with_cell({**base, **{key: chosen for key, chosen in values.items() if key == "outputs.map_cell_m"}}, extent, cell_m)
+    if end_time is not None:
+        end_time = arguments.time("end_time", end_time)
     at_once = (os.cpu_count() or 1) if processes is None else arguments.count("processes", processes, 512)
     jobs: list[_Job] = [
         (scene, {**base, **dict(zip(values, chosen))}, end_time, extent, cell_m)

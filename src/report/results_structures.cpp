@@ -32,7 +32,7 @@ std::vector<const observe::BuildingImpact*> drawn(const run::RunResult& result) 
     return all;
 }
 
-std::string name_and_kind(const observe::BuildingImpact& impact) {
+std::string shown_name(const observe::BuildingImpact& impact) {
     return impact.name.empty() ? "unnamed" : impact.name;
 }
 
@@ -45,7 +45,7 @@ Json events(const std::vector<observe::BuildingImpact>& impacts, double observe:
     Json list = Json::array();
     for (const observe::BuildingImpact& impact : impacts) {
         if (std::isnan(impact.*time)) continue;
-        list.push_back({{"name", name_and_kind(impact)}, {"time_s", impact.*time}, {"another", !list.empty()}});
+        list.push_back({{"name", shown_name(impact)}, {"time_s", impact.*time}, {"another", !list.empty()}});
     }
     return list;
 }
@@ -65,7 +65,7 @@ Json net_balances(const std::vector<observe::BuildingImpact>& impacts) {
     for (const observe::BuildingImpact& net : impacts) {
         if (!net.hit || std::isnan(net.passing_share)) continue;
         const double all = net.retained_volume + net.passed_volume + net.overtopped_volume;
-        list.push_back({{"name", name_and_kind(net)},
+        list.push_back({{"name", shown_name(net)},
                         {"passing_percent", 100 * net.passing_share},
                         {"arrived_m3", all},
                         {"retained_m3", net.retained_volume},
@@ -107,7 +107,7 @@ Json net_chart(const run::RunResult& result) {
         plot.line(t, through, "series v1", "through");
         plot.line(t, over, "series v2", "over");
         if (!std::isnan(net->failure_time)) plot.vertical(net->failure_time, "toe-line");
-        plot.label(time.high, volume.high, 24, 16, "start", "key", shortened(name_and_kind(*net), 34));
+        plot.label(time.high, volume.high, 24, 16, "start", "key", shortened(shown_name(*net), 34));
         chart.plots.push_back(std::move(plot));
     }
     return chart_json(chart);
@@ -130,7 +130,7 @@ Json building_rows(const scene::Scene& scene, const run::RunResult& result, std:
     for (std::size_t k = 0; k < std::min(max_rows, hit.size()); ++k) {
         const observe::BuildingImpact& b = impacts[hit[k]];
         const IntensityClass* intensity = guideline.class_of(b);
-        Json name = {{"value", name_and_kind(b)}, {"mark", fmt::format("hit-{}", impact_class(b))}};
+        Json name = {{"value", shown_name(b)}, {"mark", fmt::format("hit-{}", impact_class(b))}};
         if (!std::isnan(b.removed_time)) name["note"] = fmt::format("until {} s", fixed(b.removed_time, 1));
         Json height;
         if (hit[k] < scene.buildings.size()) {
@@ -189,7 +189,7 @@ Json barriers(const run::RunResult& result) {
         rows = table(columns);
         for (const observe::BuildingImpact& b : impacts) {
             if (!b.is_barrier) continue;
-            rows["rows"].push_back({{"name", name_and_kind(b)},
+            rows["rows"].push_back({{"name", shown_name(b)},
                                     {"first_hit_s", seconds(b.first_hit_time)},
                                     {"peak_force_kN", b.peak_force / 1e3},
                                     {"peak_impact_pressure_kPa", b.peak_impact_pressure / 1e3},
@@ -230,7 +230,7 @@ Json force_chart(const run::RunResult& result) {
             t.push_back(s.time);
             force.push_back(s.force / 1e3);
         }
-        plot.line(t, force, fmt::format("series v{}", k), shortened(name_and_kind(*all[k]), 30));
+        plot.line(t, force, fmt::format("series v{}", k), shortened(shown_name(*all[k]), 30));
         if (!std::isnan(all[k]->failure_time)) plot.vertical(all[k]->failure_time, "toe-line");
     }
     return chart_json({"Force on structures over time", 1000, 320, {std::move(plot)}});

@@ -3,13 +3,16 @@
 import contextlib
 import io
 import pathlib
+import signal
 import tempfile
 import unittest
 import warnings
+from unittest import mock
 
 import numpy as np
 
 import talus
+from talus import _workers
 from test_talus import open_slope
 
 
@@ -131,6 +134,19 @@ class RunsTest(unittest.TestCase):
         with contextlib.redirect_stderr(said), self.assertRaisesRegex(talus.InputError, "friction_coefficient = -1"):
             talus.study(None, {"material.friction_coefficient": [-1, -2]}, processes=1)
         self.assertEqual(said.getvalue(), "")
+
+    def test_ctrl_c_ends_the_processes_of_a_study(self):
+        started = []
+
+        class Worker(_workers._Worker):
+            def __init__(self):
+                super().__init__()
+                started.append(self.process)
+
+        with mock.patch.object(_workers, "_Worker", Worker), mock.patch.object(_workers, "wait", side_effect=KeyboardInterrupt):
+            with self.assertRaises(KeyboardInterrupt):
+                talus.study(None, {"material.friction_coefficient": [0.2, 0.3, 0.4]}, processes=2)
+        self.assertEqual([process.returncode for process in started], [-signal.SIGKILL] * 2)
 
 
 if __name__ == "__main__":

@@ -5,6 +5,7 @@ import copy
 import ctypes
 import dataclasses
 import enum
+import gc
 import importlib.util
 import inspect
 import io
@@ -15,6 +16,7 @@ import signal
 import tempfile
 import threading
 import unittest
+import weakref
 
 import numpy as np
 
@@ -115,6 +117,22 @@ class SimulationTest(unittest.TestCase):
         caller(lambda _: after.append(list(ended)))
         self.assertEqual(after, ["freed", [True]])
         caller.close()
+
+    def test_the_collector_takes_one_that_was_refused(self):
+        def refused():
+            try:
+                open_slope(**{"material.friction_coefficient": -1})
+            except talus.InputError as error:
+                error.cycle = error  # and in its frames the simulation that was not opened
+                return weakref.ref(error)
+
+        made = refused()
+        self.assertIsNotNone(made())
+        collected = threading.Thread(target=gc.collect, daemon=True)
+        collected.start()
+        collected.join(30)
+        self.assertFalse(collected.is_alive(), "waits for a thread that has ended")
+        self.assertIsNone(made())
 
     def test_reads_maps_front_and_structures(self):
         with open_slope() as simulation:
