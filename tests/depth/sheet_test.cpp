@@ -101,11 +101,11 @@ depth::Material snow() {
 }
 
 TEST(Sheet, reaches_the_speed_of_samosat) {
-    // h = 0.8 m: ln 16 / 0.43 + 4.13 = 10.577951, its square 111.89305.
-    const double thickness = 0.8, square = 111.89305;
+    // h = 0.1 m: ln 2 / 0.43 + 4.13 = 5.741970, its square 32.97022.
+    const double thickness = 0.1, square = 32.97022;
     for (const double slope : {0.35, 0.5}) {
         const double normal = gravity * thickness * std::cos(slope);
-        const double exact = sheet_speed(slope, thickness, 20, snow()), rs = exact * exact / normal;
+        const double exact = sheet_speed(slope, thickness, 8, snow()), rs = exact * exact / normal;
         const double friction = 0.155 * normal * (1 + 0.222 / (0.222 + rs)), drag = exact * exact / square;
         EXPECT_NEAR((friction + drag) / (normal * std::tan(slope)), 1, 2e-3) << slope;
     }
@@ -145,8 +145,7 @@ TEST(Samosat, is_implicit_and_stops_debris_without_reversing_it) {
             }
         }
     }
-    r.fluidization = 0.222;
-    EXPECT_EQ(depth::resisted(r, gravity, 0.5, 0.0, 0.0, 1.0, 0.1) >= 0, true) << "no depth, no weight";
+    EXPECT_GE(depth::resisted(r, gravity, 0.5, 0.0, 0.0, 1.0, 0.1), 0) << "no depth, no weight";
 }
 
 TEST(Sheet, is_relieved_by_pore_pressure) {

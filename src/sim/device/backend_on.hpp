@@ -71,10 +71,9 @@ class BackendOn final : public Resident<Executor> {
     void prepare_particles(const Model& model, const Ground&, State& state) override {
         if (!needs_.resistance) return;
         const double before = state.previous_time_step;  // multipliers are still those of the last step
-        executor_.for_each(state.awake,
-                           Resist{data_, static_cast<float>(strength_per_pascal(model, state.time_step)),
-                                  static_cast<float>(before > 0 ? -1 / (before * before) : 0),
-                                  static_cast<float>(state.time_step), state.time});
+        executor_.for_each(state.awake, Resist{data_, static_cast<float>(strength_per_pascal(model, state.time_step)),
+                                               static_cast<float>(before > 0 ? -1 / (before * before) : 0),
+                                               static_cast<float>(state.time_step), state.time});
     }
 
     void warm_start(const Model& model, const Ground&, State& state) override {

@@ -80,7 +80,7 @@ export interface MaterialValues {
   friction_coefficient: number;
   /** Coulomb friction on the walls and roofs of buildings. null: equal to friction_coefficient. */
   building_friction_coefficient: number | null;
-  /** Coulomb friction of debris on debris. null: equal to friction_coefficient. */
+  /** Coulomb friction of debris on debris. null: equal to friction_coefficient, with samosat twice that. */
   internal_friction_coefficient: number | null;
   /** Share of the velocity difference to its neighbours that debris loses per 1/60 s, at any time step. The same share is another material at another particle spacing; kinematic_viscosity_m2ps is not. */
   viscosity: number;
