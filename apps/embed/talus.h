@@ -247,8 +247,9 @@ TALUS_API int talus_get_map(const talus_simulation* simulation, const char* name
 
 /*
  * The same on cells of the caller's, always as many: 1 to 1048576 columns and rows, at most 400 million cells. A cell
- * that holds centres of the map's cells (outputs.map_cell_m) has the mean of their depths, the largest of their peaks
- * and speeds, or their first arrival; a smaller one has the value of the map's cell that its centre lies in.
+ * that holds centres of the map's cells (outputs.map_cell_m) has the mean of their depths (0 without debris), the
+ * largest of their peaks and speeds, or their first arrival; a smaller one has the value of the cell that its centre
+ * lies in.
  */
 TALUS_API int talus_get_map_on(const talus_simulation* simulation, const char* name, const talus_grid* grid,
                                talus_map* map, talus_error* error);

@@ -2,7 +2,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdint>
 #include <limits>
 #include <string>
 #include <utility>
@@ -94,24 +93,37 @@ void add(float value, Several several, float& sum) {
     }
 }
 
+/// How many of the points x_min + (i + 1/2) spacing lie in each of `count` cells from `from` on.
+std::vector<double> points_in(double from, double cell, int count, double x_min, double spacing) {
+    const auto first_in = [&](int k) { return std::ceil((from + k * cell - x_min) / spacing - 0.5); };
+    std::vector<double> points;
+    for (int k = 0; k < count; ++k) points.push_back(first_in(k + 1) - first_in(k));
+    return points;
+}
+
 Grid<float> on_cells(const Grid<float>& from, Several several, const GridGeometry& wanted) {
     Grid<float> to(wanted, no_value);
     if (from.values.empty()) return to;
-    std::vector<std::uint32_t> centres(wanted.size());
+    const GridGeometry& g = from.geometry;
     std::size_t cell = 0;
-    for (int row = 0; row < from.geometry.rows; ++row) {
-        for (int column = 0; column < from.geometry.columns; ++column) {
-            if (!cell_at(wanted, from.geometry.centre(column, row), cell)) continue;
-            add(from.at(column, row), several, to.values[cell]);
-            ++centres[cell];
+    for (int row = 0; row < g.rows; ++row) {
+        for (int column = 0; column < g.columns; ++column) {
+            if (cell_at(wanted, g.centre(column, row), cell)) add(from.at(column, row), several, to.values[cell]);
         }
     }
-    for (std::size_t k = 0; k < to.values.size(); ++k) {
-        if (several == Several::mean && centres[k] > 1) to.values[k] /= static_cast<float>(centres[k]);
-        if (centres[k] > 0) continue;
-        const auto columns = static_cast<std::size_t>(wanted.columns);
-        const auto centre = wanted.centre(static_cast<int>(k % columns), static_cast<int>(k / columns));
-        if (cell_at(from.geometry, centre, cell)) to.values[k] = from.values[cell];
+    // A mean is over all cells of the map that there would be, had it no edges: beyond them there is no debris.
+    const std::vector<double> in_column = points_in(wanted.x_min, wanted.cell, wanted.columns, g.x_min, g.cell),
+                              in_row = points_in(wanted.y_min, wanted.cell, wanted.rows, g.y_min, g.cell);
+    for (int row = 0; row < wanted.rows; ++row) {
+        for (int column = 0; column < wanted.columns; ++column) {
+            float& value = to.at(column, row);
+            const double centres = in_column[static_cast<std::size_t>(column)] * in_row[static_cast<std::size_t>(row)];
+            if (!(centres > 0)) {
+                value = cell_at(g, wanted.centre(column, row), cell) ? from.values[cell] : no_value;
+            } else if (several == Several::mean) {
+                value = static_cast<float>(value / centres);
+            }
+        }
     }
     return to;
 }

@@ -92,8 +92,8 @@ TEST(Moments, of_debris_that_comes_in_with_the_step_are_those_of_its_velocity) {
     const Simulation simulation = open_with_long_steps();
     talus_error error = TALUS_SIZED(talus_error);
     ASSERT_EQ(talus_apply(simulation.get(), R"({"action": "put_inflow", "line": [[30, 12], [30, 18]],
-                                               "hydrograph": [{"time_s": 0, "discharge_m3ps": 6, "velocity_mps": 4},
-                                                              {"time_s": 4, "discharge_m3ps": 6, "velocity_mps": 4}]})",
+                                               "hydrograph": [{"time_s": 0, "discharge_m3ps": 16, "velocity_mps": 4},
+                                                              {"time_s": 4, "discharge_m3ps": 16, "velocity_mps": 4}]})",
                           nullptr, &error),
               TALUS_OK)
         << error.text;
