@@ -99,7 +99,7 @@ class _Clock:
         expected, remaining = state["expected_end_s"], state["wall_remaining_s"]
         if simulated >= end:
             left = 0.0
-        elif remaining is None and expected is not None:  # too little is done to say
+        elif remaining is None and (expected is not None or simulated < 0.01 * end):  # too little is done to say
             return f"[{'':40}] {simulated:.1f} s"
         elif remaining is None:  # debris outlasts the estimate: at the mean pace until the end
             left = gone * (end - simulated) / max(simulated, 1e-9)

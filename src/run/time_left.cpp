@@ -22,8 +22,13 @@ WorkClock::WorkClock(std::vector<double> efforts, int at_once) : at_once_(std::m
     for (const double effort : efforts) pieces_.push_back({.effort = effort});
 }
 
+WorkClock::Piece& WorkClock::piece(std::size_t run) {
+    if (run >= pieces_.size()) pieces_.resize(run + 1);
+    return pieces_[run];
+}
+
 void WorkClock::found(std::size_t run, double wall_time) {
-    Piece& piece = pieces_.at(run);
+    Piece& piece = this->piece(run);
     piece.phase = Phase::over;
     piece.effort = 0;  // none of this call's
     earlier_time_ += wall_time;
@@ -31,7 +36,7 @@ void WorkClock::found(std::size_t run, double wall_time) {
 }
 
 void WorkClock::begin(std::size_t run, double now) {
-    Piece& piece = pieces_.at(run);
+    Piece& piece = this->piece(run);
     piece.phase = Phase::under_way;
     piece.begun = now;
     piece.end = unknown;
@@ -39,12 +44,12 @@ void WorkClock::begin(std::size_t run, double now) {
 }
 
 void WorkClock::tick(std::size_t run, double now, double remaining) {
-    pieces_.at(run).end = now + remaining;
+    piece(run).end = now + remaining;
 }
 
 void WorkClock::end(std::size_t run, double now) {
-    pieces_.at(run).phase = Phase::over;
-    pieces_.at(run).end = now;
+    piece(run).phase = Phase::over;
+    piece(run).end = now;
 }
 
 /// s, of a run of effort 1. Those under way count as well: the first to end are the short ones.

@@ -18,7 +18,7 @@ constexpr double least_share_done = 0.01;
 /// effort. Time is any wall clock in s; that of the first begin is the zero of what has elapsed.
 class WorkClock {
   public:
-    /// `efforts`: wall times of the runs over each other, in the order in which they begin.
+    /// `efforts`: wall times of the runs over each other, in the order in which they begin; a run beyond them has 1.
     explicit WorkClock(std::vector<double> efforts, int at_once = 1);
 
     /// An earlier call made this run in `wall_time` s.
@@ -42,6 +42,7 @@ class WorkClock {
         double begun = 0, end = 0;  // s; the end of a run under way as it says, NaN: it does not
     };
     [[nodiscard]] double unit() const;
+    [[nodiscard]] Piece& piece(std::size_t run);
 
     std::vector<Piece> pieces_;
     int at_once_;

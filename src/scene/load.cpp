@@ -1,5 +1,6 @@
 #include "scene/load.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <fstream>
@@ -9,6 +10,7 @@
 
 #include "core/angle.hpp"
 #include "core/coordinate_text.hpp"
+#include "core/decimals.hpp"
 #include "core/hash.hpp"
 #include "core/try.hpp"
 #include "geo/file_name.hpp"
@@ -170,6 +172,9 @@ void record_input(const std::string& role, const std::string& name, Scene& scene
 }
 
 std::string place_text(const PlanPoint& p) {
+    const double size = std::max(std::abs(p.x), std::abs(p.y));
+    const int decimals = decimals_for(size, 1);
+    if (decimals > 1) return fmt::format("({:.{}f}, {:.{}f})", p.x, decimals, p.y, decimals);
     return fmt::format("({}, {})", coordinate_text(p.x), coordinate_text(p.y));
 }
 

@@ -14,12 +14,14 @@
 namespace talus::scene {
 
 double output_scale(double path_length) {
-    constexpr double smallest = 0.001, rounding = 1e-9;
+    constexpr double smallest = 0.001;
     if (!(path_length > 0) || path_length >= shortest_field_path) return 1;
-    const double share = path_length / shortest_field_path * (1 + rounding);
+    const double share = path_length / shortest_field_path;
     const double power = std::pow(10, std::floor(std::log10(share)));
     const double digit = share / power;
-    return std::max(smallest, (digit >= 5 ? 5 : digit >= 2 ? 2 : 1) * power);
+    // The bounds are the geometric means of 1, 2, 5 and 10.
+    const double round = digit > std::sqrt(50) ? 10 : digit > std::sqrt(10) ? 5 : digit > std::sqrt(2) ? 2 : 1;
+    return std::max(smallest, round * power);
 }
 
 void shorten_outputs(Scene& scene) {

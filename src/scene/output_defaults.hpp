@@ -8,7 +8,7 @@ namespace talus::scene {
 inline constexpr double shortest_field_path = 20;
 
 /// Lengths of the defaults of [outputs] over those in the field: 1, and for a shorter flow path its length over
-/// shortest_field_path, rounded down to 1, 2 or 5 times a power of ten.
+/// shortest_field_path, rounded to 1, 2 or 5 times a power of ten.
 [[nodiscard]] double output_scale(double path_length);
 
 /// Shortens the lengths of [outputs] that the scene does not give, with a note, where the flow path is short: 1 m of

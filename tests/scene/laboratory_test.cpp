@@ -24,10 +24,11 @@ TEST(OutputScale, IsThatOfTheFieldFromTwentyMetresOn) {
 }
 
 TEST(OutputScale, FallsWithTheFlowPathInRoundSteps) {
-    EXPECT_NEAR(output_scale(19.9), 0.5, 1e-12);
+    EXPECT_NEAR(output_scale(19.9), 1, 1e-12) << "without a jump";
     EXPECT_NEAR(output_scale(10), 0.5, 1e-12);
     EXPECT_NEAR(output_scale(4), 0.2, 1e-12);
     EXPECT_NEAR(output_scale(2), 0.1, 1e-12);
+    EXPECT_NEAR(output_scale(1.91), 0.1, 1e-12);
     EXPECT_NEAR(output_scale(0.5), 0.02, 1e-12);
     EXPECT_EQ(output_scale(1e-6), 0.001) << "the least that a key allows";
 }
