@@ -4,16 +4,13 @@
 
 #include <ogr_geometry.h>
 
+#include "core/result.hpp"
+
 /// Closed lines where polygons are wanted. Not for other modules.
 namespace talus::geo {
 
-struct ClosedLine {
-    bool is_line = false;
-    std::unique_ptr<OGRGeometry> polygon;  ///< null: the line is open
-};
-
-/// A line that ends where it begins is a polygon that was drawn with another tool, as by GPS receivers and in KML.
-/// `tolerance`: between its ends, in its own unit.
-[[nodiscard]] ClosedLine close_line(const OGRGeometry& geometry, double tolerance);
+/// The polygon within a line that ends where it begins, as GPS receivers and KML draw polygons; null: it is no line.
+/// `geographic`: its coordinates are degrees. Error, the end of a sentence: it is an open line.
+[[nodiscard]] Result<std::unique_ptr<OGRGeometry>> polygon_of_line(const OGRGeometry& geometry, bool geographic);
 
 }  // namespace talus::geo

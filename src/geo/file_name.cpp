@@ -23,12 +23,12 @@ namespace fs = std::filesystem;
 
 constexpr std::size_t most_named = 12;  // members of an archive in a message
 
-bool is_file(const std::string& name) {
+bool is_regular(const std::string& name) {
     std::error_code failed;
     return fs::is_regular_file(name, failed);
 }
 
-bool ends_with(const std::string& name, std::string_view ending) {
+bool has_ending(const std::string& name, std::string_view ending) {
     const std::string lower = lower_case(name);
     return lower.size() > ending.size() && lower.ends_with(ending);
 }
@@ -38,41 +38,41 @@ std::string archive_in(const std::string& name) {
     const std::string lower = lower_case(name);
     for (std::size_t at = lower.find(".zip"); at != std::string::npos; at = lower.find(".zip", at + 4)) {
         std::string archive = name.substr(0, at + 4);
-        if ((at + 4 == name.size() || name[at + 4] == '/') && is_file(archive)) return archive;
+        if ((at + 4 == name.size() || name[at + 4] == '/') && is_regular(archive)) return archive;
     }
     return "";
 }
 
 /// Braces: the archive's name may hold any characters.
-std::string inside(const std::string& archive, const std::string& member) {
+std::string in_archive(const std::string& archive, const std::string& member) {
     return "/vsizip/{" + archive + "}/" + member;
 }
 
-struct Member {
+struct ArchiveMember {
     std::string name, format;
 };
 
 /// What GDAL takes for a data set of its own but belongs to another: tables of a Shapefile, overviews, masks.
-bool belongs_to_another(const Member& member) {
+bool belongs_to_another(const ArchiveMember& member) {
     constexpr std::array<std::string_view, 7> endings = {".dbf", ".shx", ".ovr", ".msk", ".xml", ".prj", ".cpg"};
     return std::any_of(endings.begin(), endings.end(),
-                       [&](std::string_view ending) { return ends_with(member.name, ending); });
+                       [&](std::string_view ending) { return has_ending(member.name, ending); });
 }
 
-std::vector<Member> data_sets(const std::string& archive, unsigned flags) {
-    std::vector<Member> found;
+std::vector<ArchiveMember> data_sets(const std::string& archive, unsigned flags) {
+    std::vector<ArchiveMember> found;
     const CPLStringList names(VSIReadDirRecursive(("/vsizip/{" + archive + "}").c_str()));
     for (int k = 0; k < names.size(); ++k) {
-        Member member{names[k], ""};
+        ArchiveMember member{names[k], ""};
         if (member.name.ends_with('/') || member.name.starts_with("__MACOSX/")) continue;
-        GDALDriverH driver = GDALIdentifyDriverEx(inside(archive, member.name).c_str(),
+        GDALDriverH driver = GDALIdentifyDriverEx(in_archive(archive, member.name).c_str(),
                                                   flags & (GDAL_OF_RASTER | GDAL_OF_VECTOR), nullptr, nullptr);
         if (driver == nullptr || belongs_to_another(member)) continue;
         member.format = GDALGetDriverShortName(driver);
         found.push_back(std::move(member));
     }
     // A picture beside a data set is a preview.
-    const auto is_picture = [](const Member& m) { return m.format == "PNG" || m.format == "JPEG"; };
+    const auto is_picture = [](const ArchiveMember& m) { return m.format == "PNG" || m.format == "JPEG"; };
     if (!std::all_of(found.begin(), found.end(), is_picture)) std::erase_if(found, is_picture);
     return found;
 }
@@ -82,7 +82,7 @@ Result<std::string> name_in_zip(const std::string& file, const std::string& arch
     const GdalMessages messages;
     std::string member = file.size() > archive.size() ? file.substr(archive.size() + 1) : "";
     if (member.empty()) {
-        const std::vector<Member> found = data_sets(archive, flags);
+        const std::vector<ArchiveMember> found = data_sets(archive, flags);
         if (found.empty()) {
             return Error{
                 fmt::format("{}: there is no {} in this archive{}", file, kind,
@@ -91,7 +91,7 @@ Result<std::string> name_in_zip(const std::string& file, const std::string& arch
         if (found.size() > 1) {
             std::vector<std::string> names;
             names.reserve(found.size());
-            for (const Member& one : found) names.push_back(shell_quoted(file + "/" + one.name));
+            for (const ArchiveMember& one : found) names.push_back(shell_quoted(file + "/" + one.name));
             const bool more = names.size() > most_named;
             names.resize(std::min(names.size(), most_named));
             return Error{fmt::format("{}: holds {} data sets; name one of them: {}{}", file, found.size(),
@@ -99,7 +99,7 @@ Result<std::string> name_in_zip(const std::string& file, const std::string& arch
         }
         member = found.front().name;
     }
-    const std::string name = inside(archive, member);
+    const std::string name = in_archive(archive, member);
     GDALDriverH driver =
         GDALIdentifyDriverEx(name.c_str(), flags & (GDAL_OF_RASTER | GDAL_OF_VECTOR), nullptr, nullptr);
     if (driver == nullptr) {
@@ -120,7 +120,7 @@ Result<std::string> name_in_zip(const std::string& file, const std::string& arch
 
 Result<LayerOfFile> split_layer(const std::string& name) {
     const std::size_t bar = name.find('|');
-    if (bar == std::string::npos || is_file(name)) return LayerOfFile{name, ""};
+    if (bar == std::string::npos || is_regular(name)) return LayerOfFile{name, ""};
     constexpr std::string_view word = "layername=";
     const std::string rest = name.substr(bar + 1);
     if (!lower_case(rest).starts_with(word) || rest.size() == word.size() || rest.find('|') != std::string::npos) {
@@ -138,7 +138,7 @@ bool is_gdal_name(const std::string& name) {
 }
 
 std::string file_on_disk(const std::string& name) {
-    if (is_file(name) || name.starts_with("/vsi")) return name;
+    if (is_regular(name) || name.starts_with("/vsi")) return name;
     const Result<LayerOfFile> split = split_layer(name);
     const std::string& file = split ? split->file : name;
     const std::string archive = archive_in(file);
@@ -148,11 +148,11 @@ std::string file_on_disk(const std::string& name) {
 Result<std::string> name_for_gdal(const std::string& file, unsigned flags, const std::string& kind) {
     if (file.starts_with("/vsi")) return file;
     prepare_gdal();
-    if (ends_with(file, ".gz") && is_file(file)) {
+    if (has_ending(file, ".gz") && is_regular(file)) {
         return "/vsigzip/" + fs::absolute(file).lexically_normal().string();
     }
     const std::string archive = archive_in(file);
-    if (archive.empty() || ends_with(file, ".shp.zip")) return file;  // GDAL's own reader takes these
+    if (archive.empty() || has_ending(file, ".shp.zip")) return file;  // GDAL's own reader takes these
     return name_in_zip(file, archive, flags, kind);
 }
 

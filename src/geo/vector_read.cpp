@@ -306,22 +306,6 @@ Error wrong_geometry(const std::string& file, const ReadFeature& read, const std
                         OGRGeometryTypeToName(wkbFlatten(read.feature->GetGeometryRef()->getGeometryType())), wanted)};
 }
 
-/// Puts the polygon in place of a closed line. Errors: an open one.
-Status take_closed_line(const std::string& file, const Source& source, ReadFeature& read, std::size_t& closed_lines) {
-    const bool degrees = source.layer->GetSpatialRef()->IsGeographic() != 0;
-    ClosedLine closed = close_line(*read.geometry, degrees ? 1e-8 : 1e-3);
-    if (!closed.is_line) return {};
-    if (!closed.polygon) {
-        return Error{
-            fmt::format("{}: {} is an open line, a polygon is needed; end it where it begins, or make a polygon "
-                        "of it (in QGIS: Vector, Geometry Tools, Lines to Polygons)",
-                        file, read.label)};
-    }
-    read.geometry = std::move(closed.polygon);
-    ++closed_lines;
-    return {};
-}
-
 /// Transforms a geometry to the terrain's CRS.
 Status transform(const std::string& file, const Source& source, ReadFeature& read) {
     if (!source.transformation) return {};
@@ -375,10 +359,16 @@ Result<PolygonLayer> read_polygons(const std::string& file, const std::string& l
     PolygonLayer result;
     result.reprojection = source.reprojection;
     source.layer->ResetReading();
+    const bool geographic = source.layer->GetSpatialRef()->IsGeographic() != 0;
     for (GIntBig number = 1;; ++number) {
         TALUS_ASSIGN(auto read, next_feature(file, source, number));
         if (!read.feature) break;
-        TALUS_TRY(take_closed_line(file, source, read, result.closed_lines));
+        auto closed = polygon_of_line(*read.geometry, geographic);
+        if (!closed) return Error{fmt::format("{}: {} {}", file, read.label, closed.error().message)};
+        if (*closed) {
+            read.geometry = std::move(*closed);
+            ++result.closed_lines;
+        }
         read.geometry->closeRings();
         PolygonFeature feature;
         feature.fid = read.feature->GetFID();

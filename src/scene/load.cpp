@@ -102,7 +102,8 @@ void note_terrain_file(const geo::TerrainFrame& frame, Scene& scene) {
     }
     if (frame.holes_read_0) {
         scene.notes.emplace_back(
-            "terrain: parts of the file were never written, and it declares no nodata value: these parts read as 0 m");
+            "terrain: parts of the file are holes, which were never written, and it declares no nodata value: they are "
+            "read as 0 m");
     }
 }
 

@@ -135,7 +135,7 @@ const std::vector<BadInput> bad_inputs = {
     {"EmptyTerrainFile", [](const SmallScene& s) { write_text(s.input("terrain.tif"), ""); }, {"terrain.tif"}},
     {"TruncatedTerrain",
      [](const SmallScene& s) { std::filesystem::resize_file(s.input("terrain.tif"), 2000); },
-     {"terrain.tif: parts of the raster were never written"}},
+     {"terrain.tif: the file is damaged or cut short"}},
     {"TerrainWithoutData",
      [](const SmallScene& s) {
          write_raster(s.input("terrain.tif"), SmallScene::terrain(), [](int, int) { return nothing; });

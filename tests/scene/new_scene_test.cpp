@@ -85,7 +85,7 @@ TEST_F(NewSceneTest, WorksFromRelativeNames) {
 
 TEST_F(NewSceneTest, NoThicknessIsAssumed) {
     write_features("release.geojson", {rectangle(20, 90, 40, 110, "\"depth\": 2")});
-    EXPECT_THAT(refusal(), AllOf(HasSubstr("give --thickness-m M (normal to the slope) or --volume-m3 M3"),
+    EXPECT_THAT(refusal(), AllOf(HasSubstr("(--thickness-m M), or its volume (--volume-m3 M3)"),
                                  HasSubstr("thickness_m or thickness"), HasSubstr("it has depth")));
 }
 

@@ -91,21 +91,22 @@ TEST_F(SuspectGround, SteepGroundFarFromTheDebrisIsNoQuestionOfFeet) {
 TEST_F(SuspectGround, EightBitsAreRarelyElevations) {
     EXPECT_THAT(told(valley), Not(Contains(HasSubstr("8-bit"))));
     GDALAllRegister();
-    const GDALDatasetUniquePtr from(GDALDataset::Open(path("dem.tif").c_str(), GDAL_OF_RASTER));
-    const GDALDatasetUniquePtr memory(GetGDALDriverManager()->GetDriverByName("GTiff")->Create(
-        path("hillshade.tif").c_str(), columns, rows, 1, GDT_Byte, nullptr));
-    std::array<double, 6> transform{};
-    from->GetGeoTransform(transform.data());
-    memory->SetGeoTransform(transform.data());
-    memory->SetSpatialRef(from->GetSpatialRef());
-    std::vector<float> line(columns * rows);
-    ASSERT_EQ(from->GetRasterBand(1)->RasterIO(GF_Read, 0, 0, columns, rows, line.data(), columns, rows, GDT_Float32, 0,
-                                               0, nullptr),
-              CE_None);
-    ASSERT_EQ(memory->GetRasterBand(1)->RasterIO(GF_Write, 0, 0, columns, rows, line.data(), columns, rows, GDT_Float32,
-                                                 0, 0, nullptr),
-              CE_None);
-    memory->FlushCache();
+    {
+        const GDALDatasetUniquePtr from(GDALDataset::Open(path("dem.tif").c_str(), GDAL_OF_RASTER));
+        const GDALDatasetUniquePtr made(GetGDALDriverManager()->GetDriverByName("GTiff")->Create(
+            path("hillshade.tif").c_str(), columns, rows, 1, GDT_Byte, nullptr));
+        std::array<double, 6> transform{};
+        from->GetGeoTransform(transform.data());
+        made->SetGeoTransform(transform.data());
+        made->SetSpatialRef(from->GetSpatialRef());
+        std::vector<float> line(columns * rows);
+        ASSERT_EQ(from->GetRasterBand(1)->RasterIO(GF_Read, 0, 0, columns, rows, line.data(), columns, rows,
+                                                   GDT_Float32, 0, 0, nullptr),
+                  CE_None);
+        ASSERT_EQ(made->GetRasterBand(1)->RasterIO(GF_Write, 0, 0, columns, rows, line.data(), columns, rows,
+                                                   GDT_Float32, 0, 0, nullptr),
+                  CE_None);
+    }
     const auto scene = load_scene(folder / "scene.toml", {"terrain.file=" + path("hillshade.tif")});
     ASSERT_TRUE(scene) << scene.error().message;
     EXPECT_THAT(scene->notes, Contains(AllOf(HasSubstr("8-bit numbers"), HasSubstr("hillshade"))));
