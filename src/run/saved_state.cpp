@@ -19,7 +19,7 @@ using StateJson = nlohmann::ordered_json;
 
 /// Whether a value has part in the debris or in what is measured of it. The others say when a run ends, how fast it is
 /// computed, or what is written about it.
-bool counts(const params::Section& section, const params::Parameter& parameter) {
+bool has_part(const params::Section& section, const params::Parameter& parameter) {
     constexpr std::array<std::string_view, 15> sections = {
         "terrain",    "flow_path", "material", "solver",          "zone",    "release", "bed",          "inflow",
         "hydrograph", "buildings", "barrier",  "barrier_opening", "outputs", "gauge",   "cross_section"};
@@ -38,7 +38,7 @@ StateJson values_of(const scene::Scene& scene) {
     StateJson values = StateJson::object();
     for_each_value(scene.spec, [&](const params::Section& section, std::size_t index,
                                    const params::Parameter& parameter, const params::ParameterValue& value) {
-        if (counts(section, parameter)) values[key_path(section, index, parameter)] = params::toml_text(value);
+        if (has_part(section, parameter)) values[key_path(section, index, parameter)] = params::toml_text(value);
     });
     return values;
 }
