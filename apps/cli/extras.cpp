@@ -38,6 +38,7 @@ void Extras::add(const run::Frame& frame) {
 }
 
 void Extras::save(const std::string& state, double time) {
+    if (!save_) return;
     const Status written = write_state_file(save_->file, state);
     note(written);
     if (!written || !save_->time || time >= *save_->time - 1e-9) return;

@@ -79,7 +79,9 @@ ObservationResult summarise_observation(const Calibration& c, std::size_t j) {
     for (std::size_t i = 0; i < result.posterior.draws.size(); ++i) {
         const stats::PredictionEmulator::Estimate e = emulator.at(result.posterior.draws[i]);
         const double value = e.value.mean + std::sqrt(e.value.variance + e.value.noise) * stats::normal_draw(7, i, j);
-        expected.push_back(stats::draw(8, i, j) < e.reached ? value : observed.unreached);
+        // The emulator's error is normal, and knows of no bound: what lies beyond one is at it (a censored normal).
+        const double possible = std::clamp(value, observed.least, observed.most);
+        expected.push_back(stats::draw(8, i, j) < e.reached ? possible : observed.unreached);
     }
     o.median = ensemble::percentile(expected, 50);
     o.low = ensemble::percentile(expected, 2.5);

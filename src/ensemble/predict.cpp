@@ -139,6 +139,7 @@ std::vector<ObservedValue> observed_values(const scene::Scene& scene) {
         const params::RunUpSpec& o = spec.run_ups[i];
         add("run_up", i, "height_m", label(o.name, fmt::format("Run-up mark {}", i + 1)), "m", o.height, o.uncertainty);
         all.back().unreached = -run_up_radius;
+        all.back().least = -std::numeric_limits<double>::infinity();
     }
     for (std::size_t i = 0; i < spec.deposit_depths.size(); ++i) {
         const params::DepositDepthSpec& o = spec.deposit_depths[i];
@@ -159,16 +160,19 @@ std::vector<ObservedValue> observed_values(const scene::Scene& scene) {
         const params::OutlineSpec& o = spec.deposit_outlines[i];
         add("deposit_outline", i, "overlap", label(o.name, fmt::format("Overlap with deposit outline {}", i + 1)), "",
             1, o.uncertainty);
+        all.back().most = 1;
     }
     for (std::size_t i = 0; i < spec.affected_areas.size(); ++i) {
         const params::OutlineSpec& o = spec.affected_areas[i];
         add("affected_area", i, "overlap", label(o.name, fmt::format("Overlap with affected area {}", i + 1)), "", 1,
             o.uncertainty);
+        all.back().most = 1;
     }
     for (std::size_t i = 0; i < spec.elevation_changes.size(); ++i) {
         const params::ElevationChangeSpec& o = spec.elevation_changes[i];
         add("elevation_change", i, "agreement", label(o.name, fmt::format("Agreement with elevation change {}", i + 1)),
             "", 1, o.uncertainty);
+        all.back().most = 1;
     }
     return all;
 }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -63,6 +64,9 @@ struct ObservedValue {
     /// Substitute for the prediction of a run whose debris did not reach the place: front velocity and front chainage
     /// 0, arrival at the latest end of the run, run-up below the mark by the search radius.
     double unreached = 0;
+    /// What a prediction can be: no speed, time, depth or pressure is below 0, no overlap above 1. The height of a
+    /// run-up above the ground at its mark can be below 0.
+    double least = 0, most = std::numeric_limits<double>::infinity();
 };
 
 /// All observations of a scene, in the order of its sections.

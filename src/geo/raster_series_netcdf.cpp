@@ -2,6 +2,8 @@
 #include <cmath>
 #include <filesystem>
 #include <memory>
+#include <set>
+#include <string>
 #include <system_error>
 
 #include <fmt/format.h>
@@ -27,6 +29,16 @@ std::vector<double> centres(double first, double cell, int count) {
     std::vector<double> values(static_cast<std::size_t>(count));
     for (std::size_t k = 0; k < values.size(); ++k) values[k] = first + (static_cast<double>(k) + 0.5) * cell;
     return values;
+}
+
+/// Empty: it cannot be written so.
+std::string wkt2_of(const OGRSpatialReference& reference) {
+    const char* const options[] = {"FORMAT=WKT2_2019", nullptr};
+    char* wkt = nullptr;
+    const bool exported = reference.exportToWkt(&wkt, options) == OGRERR_NONE;
+    std::string text = exported ? wkt : "";
+    CPLFree(wkt);
+    return text;
 }
 
 /// A file being written. After the first failure, which GDAL reports, nothing more is written.
@@ -91,6 +103,18 @@ class NetcdfFile {
     }
     GDALGroup& root() { return *root_; }
 
+    /// Says the reference system of all arrays as WKT 2, as the conventions want it (their attribute crs_wkt): GDAL
+    /// has written WKT 1. To be called when all arrays are there: one that GDAL adds would get a variable of its own.
+    bool write_wkt2(const OGRSpatialReference& reference) {
+        const std::string text = wkt2_of(reference);
+        for (const std::string& name : grid_mappings_) {
+            const auto variable = root_->OpenMDArray(name);
+            const auto attribute = variable ? variable->GetAttribute("crs_wkt") : nullptr;
+            if (!attribute || text.empty() || !attribute->Write(text.c_str())) return false;
+        }
+        return true;
+    }
+
     /// Writes the latitudes and longitudes of cells where the reference system needs them (`refer`).
     bool places(const Dimensions& plan, const OGRSpatialReference& reference, const GridGeometry& g) {
         if (!by_wkt_) return true;
@@ -126,16 +150,18 @@ class NetcdfFile {
     /// them, as for oblique Mercator systems and Krovak, a variable holds the system as WKT alone; the cells then need
     /// their latitudes and longitudes (`places`), by which any program finds its way.
     bool refer(GDALMDArray& array, const OGRSpatialReference& reference) {
-        if (!by_wkt_ && array.SetSpatialRef(&reference)) return true;
+        if (!by_wkt_ && array.SetSpatialRef(&reference)) {
+            const auto attribute = array.GetAttribute("grid_mapping");
+            const char* name = attribute ? attribute->ReadAsString() : nullptr;
+            if (name != nullptr) grid_mappings_.insert(name);
+            return true;
+        }
         if (!by_wkt_) {
             by_wkt_ = true;
-            const char* const options[] = {"FORMAT=WKT2_2019", nullptr};
-            char* wkt = nullptr;
-            const bool exported = reference.exportToWkt(&wkt, options) == OGRERR_NONE;
-            const std::string text = exported ? wkt : "";
-            CPLFree(wkt);
+            const std::string text = wkt2_of(reference);
             const auto crs = root_->CreateMDArray("crs", {}, GDALExtendedDataType::Create(GDT_Int32), nullptr);
-            if (!exported || !crs || !write_attributes(*crs, {{"crs_wkt", text}, {"spatial_ref", text}})) return false;
+            if (text.empty() || !crs || !write_attributes(*crs, {{"crs_wkt", text}, {"spatial_ref", text}}))
+                return false;
         }
         return write_attributes(array, {{"grid_mapping", "crs"}, {"coordinates", "lat lon"}});
     }
@@ -143,6 +169,7 @@ class NetcdfFile {
     std::unique_ptr<GDALDataset, GDALDatasetUniquePtrDeleter> data_;
     std::shared_ptr<GDALGroup> root_;
     bool by_wkt_ = false;
+    std::set<std::string> grid_mappings_;  ///< variables that hold a reference system
 };
 
 bool write_rows(GDALMDArray& array, const std::vector<GUInt64>& start, const GridGeometry& g, const float* values) {
@@ -195,7 +222,7 @@ Result<bool> write_file(const std::string& path, const SeriesFile& series, const
             if (!write_rows(*array, {k, 0, 0}, g, frame.data())) return false;
         }
     }
-    return true;
+    return file.write_wkt2(reference);
 }
 
 }  // namespace

@@ -368,8 +368,10 @@ HazardMaps GridObserver::maps(const depth::Solver& solver) const {
     HazardMaps maps{unknown, unknown, unknown, unknown, unknown, unknown};
     for (int row = south; row <= north; ++row) {
         for (int column = west; column <= east; ++column) {
-            if (!(peak_depth_.at(column, row) > 0)) continue;
             const int c = column - west, r = row - south;
+            // Also where it is too thin to count as having come: the map holds all the debris that is there.
+            if (solver.depth_at(column, row) > 0) maps.deposit_depth.at(c, r) = solver.depth_at(column, row);
+            if (!(peak_depth_.at(column, row) > 0)) continue;
             const float speed = peak_speed_.at(column, row);
             maps.peak_depth.at(c, r) = peak_depth_.at(column, row);
             maps.peak_speed.at(c, r) = speed;

@@ -44,14 +44,14 @@ class MovingSums {
     };
     /// What has yet to arrive.
     struct Arrival {
-        double amount, duration;  // s
-        std::uint32_t slot;
+        double amount = 0, duration = 0;  // s
+        std::uint32_t slot = 0;
     };
     void take_arrivals(double time_step);
     /// What a step added to a slot.
     struct Entry {
-        double begin, end, amount;  // s, s
-        std::uint32_t slot;
+        double begin = 0, end = 0, amount = 0;  // s, s
+        std::uint32_t slot = 0;
     };
     void take_out(Entry& entry, double begin);
 

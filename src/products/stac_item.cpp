@@ -21,10 +21,13 @@ using Json = nlohmann::ordered_json;
 struct FileKind {
     const char *ending, *type, *role;
 };
-constexpr std::array<FileKind, 9> file_kinds = {{
+constexpr std::array<FileKind, 12> file_kinds = {{
     {".tif", "image/tiff; application=geotiff; profile=cloud-optimized", "data"},
     {".gpkg", "application/geopackage+sqlite3", "data"},
     {".csv", "text/csv", "data"},
+    {".nc", "application/netcdf", "data"},
+    {".glb", "model/gltf-binary", "visual"},
+    {".usda", "model/vnd.usda", "visual"},
     {".kml", "application/vnd.google-earth.kml+xml", "data"},
     {".json", "application/json", "metadata"},
     {".html", "text/html", "overview"},
@@ -33,11 +36,15 @@ constexpr std::array<FileKind, 9> file_kinds = {{
     {".txt", "text/plain", "metadata"},
 }};
 
+/// Files of the folder and of the run over time in it; not the parts of which ParaView makes a scene.
 Json assets(const std::filesystem::path& folder) {
     std::set<std::string> names = {"manifest.json"};  // written last
-    std::error_code failed;
-    for (const auto& entry : std::filesystem::directory_iterator(folder, failed)) {
-        if (entry.is_regular_file(failed)) names.insert(entry.path().filename().string());
+    for (const char* part : {"", "series"}) {
+        std::error_code failed;
+        for (const auto& entry : std::filesystem::directory_iterator(folder / part, failed)) {
+            if (!entry.is_regular_file(failed)) continue;
+            names.insert((std::filesystem::path(part) / entry.path().filename()).generic_string());
+        }
     }
     Json all = Json::object();
     for (const std::string& name : names) {

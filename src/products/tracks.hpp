@@ -28,9 +28,9 @@ class Tracks {
 
   private:
     struct Place {
-        double time;  ///< s
+        double time = 0;  ///< s
         WorldPoint at;
-        double speed;  ///< m/s
+        double speed = 0;  ///< m/s
     };
     const scene::Scene& scene_;
     std::uint32_t stride_ = 1;  ///< particles whose ids are a multiple of it are followed

@@ -19,7 +19,7 @@ using StateJson = nlohmann::ordered_json;
 
 /// Whether a value has part in the debris or in what is measured of it. The others say when a run ends, how fast it is
 /// computed, or what is written about it.
-bool counts(const params::Section& section, const params::Parameter& parameter) {
+bool has_part(const params::Section& section, const params::Parameter& parameter) {
     constexpr std::array<std::string_view, 15> sections = {
         "terrain",    "flow_path", "material", "solver",          "zone",    "release", "bed",          "inflow",
         "hydrograph", "buildings", "barrier",  "barrier_opening", "outputs", "gauge",   "cross_section"};
@@ -38,15 +38,26 @@ StateJson values_of(const scene::Scene& scene) {
     StateJson values = StateJson::object();
     for_each_value(scene.spec, [&](const params::Section& section, std::size_t index,
                                    const params::Parameter& parameter, const params::ParameterValue& value) {
-        if (counts(section, parameter)) values[key_path(section, index, parameter)] = params::toml_text(value);
+        if (has_part(section, parameter)) values[key_path(section, index, parameter)] = params::toml_text(value);
     });
     return values;
+}
+
+std::string text_of(const StateJson& json, const std::string& key) {
+    const auto found = json.find(key);
+    if (found == json.end()) return "";
+    return found->is_string() ? found->get<std::string>() : found->dump();
 }
 
 StateJson inputs_of(const scene::Scene& scene) {
     StateJson inputs = StateJson::object();
     for (const scene::InputFile& input : scene.inputs) {
-        if (input.role != "scene") inputs[input.role] = input.hash;
+        // Observations have no part in a run; a role can have several files.
+        constexpr std::array<std::string_view, 4> others = {"scene", "deposit outline", "affected area",
+                                                            "elevation change"};
+        const auto begins = [&](std::string_view other) { return input.role.starts_with(other); };
+        if (std::any_of(others.begin(), others.end(), begins)) continue;
+        inputs[input.role] = text_of(inputs, input.role) + input.hash;
     }
     return inputs;
 }
@@ -70,12 +81,6 @@ StateJson identity_of(const scene::Scene& scene, const Run& run) {
             {"terrain", terrain_hash(scene.terrain)},
             {"values", values_of(scene)},
             {"inputs", inputs_of(scene)}};
-}
-
-std::string text_of(const StateJson& object, const std::string& key) {
-    const auto found = object.find(key);
-    if (found == object.end()) return "";
-    return found->is_string() ? found->get<std::string>() : found->dump();
 }
 
 /// "material.friction_angle_deg = 20, here it is 25" of the first key that is not the same.

@@ -144,11 +144,25 @@ Status check_series(const ParsedScene& parsed, const Scene& scene, double cell, 
         std::ceil(1e3 * end / std::max(1.0, most - 1)) / 1e3)};
 }
 
+/// The places of tracks are in memory until the end.
+Status check_tracks(const ParsedScene& parsed, const Scene& scene) {
+    constexpr double most = 1e8;  // 4 GiB
+    const params::OutputSpec& outputs = scene.spec.outputs;
+    const double frames = scene.spec.solver.end_time / outputs.series_interval + 1;
+    if (outputs.tracks * frames <= most) return {};
+    return Error{fmt::format(
+        "{} is refused; with a place every outputs.series_interval_s = {:.6g} up to solver.end_time_s = {:.6g} it must "
+        "be at most {:.0f}",
+        key_with_value(parsed, "outputs", "tracks", outputs.tracks), outputs.series_interval,
+        scene.spec.solver.end_time, std::floor(most / frames))};
+}
+
 Status check_limits(const ParsedScene& parsed, const Scene& scene) {
     const double spacing = particle_spacing(scene);
     TALUS_TRY(check_thickness(parsed, scene));
     TALUS_TRY(check_particles(parsed, scene, spacing));
     TALUS_TRY(check_outputs(parsed, scene, spacing));
+    TALUS_TRY(check_tracks(parsed, scene));
     TALUS_TRY(check_walls(parsed, scene));
     return check_memory(parsed, scene, spacing);
 }

@@ -46,8 +46,8 @@ struct Ground {
   private:
     /// A cell of the bed that debris has eroded.
     struct Eroded {
-        std::size_t cell;
-        float depth, elevation;  ///< m, now
+        std::size_t cell = 0;
+        float depth = 0, elevation = 0;  ///< m, now
     };
 };
 

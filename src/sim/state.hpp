@@ -119,9 +119,9 @@ struct Entry {
 
 /// What a wall or roof took from a particle in the last step; a particle in a corner has two.
 struct BuildingContact {
-    std::uint32_t particle;  ///< sorted index
-    std::int32_t building;
-    float impulse;       ///< kg m/s, normal to the wall
+    std::uint32_t particle = 0;  ///< sorted index
+    std::int32_t building = 0;
+    float impulse = 0;   ///< kg m/s, normal to the wall
     LocalPoint place{};  ///< where on the wall
     float speed = 0;     ///< m/s, of the particle as it would be without this impulse
 };

@@ -1,6 +1,9 @@
 #include "calibrate/calibration.hpp"
 
+#include <algorithm>
+#include <cmath>
 #include <functional>
+#include <limits>
 #include <optional>
 #include <vector>
 
@@ -71,6 +74,18 @@ TEST_F(CalibrationTest, WarnsOfWhatIsNotKnown) {
     EXPECT_GT(summary.factors[1].kept, 0.8);
     EXPECT_THAT(summary.warnings, Contains(HasSubstr("material.viscosity is hardly constrained")));
     EXPECT_THAT(summary.warnings, testing::Not(Contains(HasSubstr("is not explained"))));
+}
+
+TEST_F(CalibrationTest, ExpectsNothingThatCannotBe) {
+    // Around a velocity of 0.2 m/s the normal error of the emulator reaches far below 0.
+    made.observed[0].value = 0.2;
+    made.observed[0].uncertainty = 0.1;
+    search_with([](const std::vector<double>& p) {
+        return std::vector<double>{std::max(0.0, 0.2 + std::sin(40 * p[0]) + std::sin(90 * p[1])), 12};
+    });
+    EXPECT_EQ(summarise(made).observations[0].low, 0);
+    made.observed[0].least = -std::numeric_limits<double>::infinity();
+    EXPECT_LT(summarise(made).observations[0].low, 0) << "else nothing was to be cut";
 }
 
 TEST_F(CalibrationTest, WarnsWhereNothingFits) {

@@ -159,6 +159,11 @@ TEST_F(ObservedScene, HasAValueAndAPredictionForEveryObservation) {
     EXPECT_DOUBLE_EQ(observed[1].value, superelevation_velocity(scene->spec.superelevations[0]));
     EXPECT_DOUBLE_EQ(observed[2].uncertainty, 1);
     EXPECT_EQ(observed[5].kind, ObservedValue::Kind::below);
+    for (const ObservedValue& o : observed) {
+        const bool run_up = o.key.starts_with("run_up"), share = o.unit.empty();
+        EXPECT_EQ(o.least, run_up ? -std::numeric_limits<double>::infinity() : 0) << o.key;
+        EXPECT_EQ(o.most, share ? 1 : std::numeric_limits<double>::infinity()) << o.key;
+    }
     EXPECT_EQ(observed[7].key, "deposit_outline[0].overlap");
     EXPECT_EQ(observed[8].key, "affected_area[0].overlap");
     EXPECT_EQ(observed[9].key, "elevation_change[0].agreement");

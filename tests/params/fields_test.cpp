@@ -61,6 +61,8 @@ TEST(FieldTable, EveryMemberIsDeclared) {
     EXPECT_EQ(declared("zone"), members<ZoneSpec>());
     EXPECT_EQ(declared("solver"), members<SolverSpec>());
     EXPECT_EQ(declared("outputs"), members<OutputSpec>());
+    EXPECT_EQ(declared("gauge"), members<GaugeSpec>());
+    EXPECT_EQ(declared("cross_section"), members<CrossSectionSpec>());
     EXPECT_EQ(declared("observation"), members<ObservationSpec>());
     EXPECT_EQ(declared("superelevation"), members<SuperelevationSpec>());
     EXPECT_EQ(declared("arrival"), members<ArrivalSpec>());

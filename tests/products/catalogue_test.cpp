@@ -88,5 +88,22 @@ TEST_F(Products, StacItemHasPlaceSoftwareAndEveryFile) {
     }
 }
 
+TEST_F(Products, StacItemHasTheRunOverTime) {
+    const test::TemporaryFolder folder;
+    std::filesystem::create_directories(folder.path() / "series/paraview");
+    for (const char* name :
+         {"series/maps.nc", "series/depth.tif", "series/run.glb", "series/run.usda", "series/paraview/run.py"}) {
+        test::write_text(folder.file(name), "x");
+    }
+    ASSERT_TRUE(write_stac_item(*scene_, *result_, folder.path()));
+    const json assets = json::parse(test::read_text(folder.path() / "stac_item.json"))["assets"];
+    EXPECT_EQ(assets["series/maps.nc"]["type"], "application/netcdf");
+    EXPECT_EQ(assets["series/maps.nc"]["href"], "./series/maps.nc");
+    for (const char* name : {"series/depth.tif", "series/run.glb", "series/run.usda"}) {
+        EXPECT_TRUE(assets.contains(name)) << name;
+    }
+    EXPECT_FALSE(assets.contains("series/paraview/run.py")) << "a part of a scene, not a file to open";
+}
+
 }  // namespace
 }  // namespace talus::products

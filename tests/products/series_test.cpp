@@ -113,6 +113,7 @@ TEST_F(SeriesOfARun, IsOnTheCellsOfItsMapsAndSaysWhereItIsFrom) {
     const GDALDatasetUniquePtr netcdf(
         GDALDataset::Open(("NETCDF:" + folder.file("series/maps.nc") + ":depth").c_str()));
     EXPECT_EQ(netcdf->GetMetadataItem("NC_GLOBAL#title"), scene.spec.scene.title);
+    EXPECT_THAT(netcdf->GetMetadataItem("transverse_mercator#crs_wkt"), testing::StartsWith("PROJCRS[")) << "WKT 2";
     EXPECT_THAT(netcdf->GetMetadataItem("NC_GLOBAL#source"), HasSubstr("talus "));
 }
 

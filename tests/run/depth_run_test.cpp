@@ -113,6 +113,12 @@ TEST_F(DepthAveragedRun, tells_what_went_over_a_dam_and_what_it_retains) {
     };
     const auto low = run_scene(loaded(dam("height_m = 1.5"), {"solver.end_time_s=40"}), {});
     ASSERT_TRUE(low);
+    double deposit = 0;
+    for (const float depth : low->observation.maps.deposit_depth.values) deposit += depth > 0 ? depth : 0;
+    const observe::TimeSample& end = low->observation.timeseries.back();
+    EXPECT_NEAR(deposit * low->map_cell * low->map_cell, end.volume_deposited + end.volume_moving,
+                1e-4 * end.volume_released)
+        << "the map has all debris that is there, however thin";
     const observe::BuildingImpact& overtopped = low->observation.buildings[0];
     EXPECT_GT(overtopped.overtopped_volume, 300);
     EXPECT_NEAR(overtopped.overtopped_volume, beyond(*low), 0.02 * overtopped.overtopped_volume);

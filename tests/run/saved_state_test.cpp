@@ -54,7 +54,7 @@ height_m = 1.5
 x_m = 824055
 y_m = 825100
 [material]
-friction_coefficient = 0.4
+friction_coefficient = 0.25
 )");
     }
 
@@ -172,7 +172,7 @@ TEST_F(SavedState, OfTheEndIsContinuedToALaterOne) {
 TEST_F(SavedState, OfSomethingElseIsRefusedAndSaysWhatIsDifferent) {
     const std::string state = state_at(loaded(), 0.5);
     EXPECT_EQ(refusal(state, {"material.friction_coefficient=0.5"}),
-              "run.state: is of a scene with material.friction_coefficient = 0.4, here it is 0.5");
+              "run.state: is of a scene with material.friction_coefficient = 0.25, here it is 0.5");
     EXPECT_THAT(refusal(state, {"solver.target_particle_count=500"}), HasSubstr("target_particle_count = 600, here"));
     EXPECT_THAT(refusal(state, {"solver.backend=host"}), HasSubstr("solver.backend = \"cpu\" only"));
     EXPECT_THAT(refusal("nothing", {}), HasSubstr("is no state of a run"));
