@@ -43,9 +43,9 @@ StateJson values_of(const scene::Scene& scene) {
     return values;
 }
 
-std::string text_of(const StateJson& json, const std::string& key) {
-    const auto found = json.find(key);
-    if (found == json.end()) return "";
+std::string text_of(const StateJson& object, const std::string& key) {
+    const auto found = object.find(key);
+    if (found == object.end()) return "";
     return found->is_string() ? found->get<std::string>() : found->dump();
 }
 
