@@ -98,17 +98,13 @@ Status find_transformation(const std::string& file, const Crs& terrain_crs, Sour
     return {};
 }
 
-/// Whether a layer's reference system says nothing of its coordinates. GeoJSON without the member crs reads as WGS 84.
-bool says_nothing(const Source& source) {
-    if (is_undefined(source.layer->GetSpatialRef())) return true;
-    GDALDriver* const driver = source.data->GetDriver();
-    return driver != nullptr && EQUAL(driver->GetDescription(), "GeoJSON") && source.crs.epsg == 4326;
-}
-
 /// A layer on a terrain in local coordinates, of which nobody knows where they lie.
 Status take_as_local(const std::string& file, const Crs& terrain_crs, Source& source) {
-    if (source.crs.local && !is_undefined(source.layer->GetSpatialRef())) return {};
-    if (!says_nothing(source)) {
+    const bool undefined = is_undefined(source.layer->GetSpatialRef());
+    if (source.crs.local && !undefined) return {};
+    // GeoJSON without the member crs reads as WGS 84.
+    const bool geojson = EQUAL(source.data->GetDriver()->GetDescription(), "GeoJSON") && source.crs.epsg == 4326;
+    if (!undefined && !geojson) {
         return Error{fmt::format("{}: is in {}, the terrain in local coordinates; give the layer in those", file,
                                  source.crs.label())};
     }
@@ -140,21 +136,15 @@ Result<Source> open_layer(const std::string& name, const std::string& layer, con
     }
     const OGRSpatialReference* reference = source.layer->GetSpatialRef();
     if (reference != nullptr) source.crs = to_crs(*reference);
-    if (terrain_crs.local) {
-        TALUS_TRY(take_as_local(file, terrain_crs, source));
-        return Result<Source>(std::move(source));
-    }
-    if (is_undefined(reference) || source.crs.local) {
+    if (!terrain_crs.local && (is_undefined(reference) || source.crs.local)) {
+        const char* const fault = is_undefined(reference) ? "states no coordinate reference system"
+                                                          : "has local coordinates, which the terrain has not";
         return Error{
             fmt::format("{}: layer \"{}\" {}; give it the code of the one it is in: ogr2ogr -a_srs EPSG:nnnn {} {}",
-                        file, source.layer->GetName(),
-                        is_undefined(reference)
-                            ? "states no coordinate reference system"
-                            : fmt::format("has local coordinates ({}), the terrain a coordinate reference system",
-                                          source.crs.label()),
-                        mended_name(file, "_crs", ".gpkg"), shell_quoted(file))};
+                        file, source.layer->GetName(), fault, mended_name(file, "_crs", ".gpkg"), shell_quoted(file))};
     }
-    TALUS_TRY(find_transformation(file, terrain_crs, source));
+    TALUS_TRY(terrain_crs.local ? take_as_local(file, terrain_crs, source)
+                                : find_transformation(file, terrain_crs, source));
     return Result<Source>(std::move(source));
 }
 
