@@ -21,6 +21,7 @@ Extent = Sequence[float]
 #: Maps of a run by name, with their units.
 UNITS = {
     "depth": "m",
+    "speed": "m/s",
     "peak_depth": "m",
     "peak_speed": "m/s",
     "peak_pressure": "Pa",
