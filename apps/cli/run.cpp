@@ -156,7 +156,7 @@ Result<Job> open_job(const RunArguments& arguments, ProgressReporter& progress, 
 /// Progress during the run, and Ctrl-C.
 class RunCallbacks {
   public:
-    RunCallbacks(const RunArguments& arguments, const Job& job, ProgressReporter& progress, InterruptWatch& watch)
+    RunCallbacks(const RunArguments& arguments, Job& job, ProgressReporter& progress, InterruptWatch& watch)
         : job_(job), progress_(progress), notes_said_(arguments.quiet || arguments.json) {
         options_.stop_requested = &watch.stop_requested();
         options_.on_progress = [this](const run::Progress& now) { report(now); };
@@ -177,7 +177,7 @@ class RunCallbacks {
         job_.plan.report_base(progress_, now);
     }
 
-    const Job& job_;
+    Job& job_;
     ProgressReporter& progress_;
     bool notes_said_;
     run::RunOptions options_;

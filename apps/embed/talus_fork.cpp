@@ -60,10 +60,10 @@ int talus_restore(talus_simulation* simulation, const talus_snapshot* snapshot, 
             return Error{"snapshot: must be of this simulation, or of one that it was forked from or into"};
         }
         auto restored = snapshot->scenario->fork();
-        auto before = snapshot->before;
         const Changing changing(*simulation);
+        simulation->before.reset();
+        if (snapshot->before) simulation->before.emplace(*snapshot->before);
         simulation->scenario = std::move(restored);
-        simulation->before = std::move(before);
         talus::embed::tell(TALUS_LOG_INFO, fmt::format("back to t = {:.4g} s", simulation->scenario->time()));
         return {};
     });

@@ -110,7 +110,7 @@ TEST(Samosat, gives_debris_inside_the_friction_of_the_ground_at_rest_unless_the_
     EXPECT_DOUBLE_EQ(make_model(material, {}, 0.1).internal_friction_coefficient, 0.6);
 }
 
-constexpr double apart = 0.14, spacing = 0.1;
+constexpr double apart = 0.14, spacing_of_sheet = 0.1;
 
 /// Speed after some seconds of the middle of a single layer of particles, so far apart that none presses on another.
 double speed_of_layer(double start, double tangent, double time) {
@@ -119,7 +119,7 @@ double speed_of_layer(double start, double tangent, double time) {
     const terrain::Terrain terrain = inclined_plane(slope * 180 / M_PI, 60, 8);
     params::MaterialSpec material = snow();
     material.viscosity = 0;
-    Model model = make_model(material, {}, spacing);
+    Model model = make_model(material, {}, spacing_of_sheet);
     Ground ground(terrain);
     std::vector<LocalPoint> points, velocities;
     for (int i = 0; i < side; ++i) {
@@ -159,7 +159,7 @@ TEST(Samosat, gives_debris_its_terminal_velocity_from_above_and_from_below) {
     // g (tan - mu (1 + slow_share)) cos = drag v^2 / h, where the drag is the smaller, the slower.
     double law_speed = 0;
     for (int k = 0; k < 50; ++k) {
-        const double share = slow_share(law.fluidization, gravity * cosine * spacing, law_speed * law_speed);
+        const double share = slow_share(law.fluidization, gravity * cosine * spacing_of_sheet, law_speed * law_speed);
         const double left = gravity * cosine * (tangent - 0.155 * (1 + share));
         law_speed = std::sqrt(left * thickness / wall_drag(law, thickness));
     }
