@@ -52,14 +52,4 @@ class Products : public testing::Test {
     static inline test::TemporaryFolder* folder_ = nullptr;
 };
 
-/// The features of a table of a data set.
-inline std::vector<OGRFeatureUniquePtr> read_layer(GDALDataset& data, const char* name) {
-    std::vector<OGRFeatureUniquePtr> features;
-    OGRLayer* layer = data.GetLayerByName(name);
-    EXPECT_NE(layer, nullptr) << name;
-    if (layer == nullptr) return features;
-    for (auto& feature : layer) features.push_back(std::move(feature));
-    return features;
-}
-
 }  // namespace talus::products
