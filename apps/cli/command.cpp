@@ -84,12 +84,12 @@ void add_overrides(CLI::App& command, std::vector<std::string>& overrides) {
 }
 
 void add_retired_option(CLI::App& command, const std::string& name, const std::string& now) {
-    command.add_option(name)
-        ->expected(0, 1)
-        ->group("")  // hidden
-        ->each([name, now](const std::string& value) {
-            throw CLI::ValidationError(name.starts_with("-") ? name : value, now);
-        });
+    const auto hide = [](CLI::Option* option) { return option->group(""); };
+    if (name.starts_with("-")) {
+        hide(command.add_flag_callback(name, [name, now] { throw CLI::ValidationError(name, now); }));
+    } else {
+        hide(command.add_option(name))->each([now](const std::string& word) { throw CLI::ValidationError(word, now); });
+    }
 }
 
 void add_data_folder(CLI::App& command, std::string& data) {

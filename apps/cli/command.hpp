@@ -44,7 +44,8 @@ void add_backend(CLI::App& command, std::vector<std::string>& overrides);
 /// The backend of a name that usable_backend() accepts.
 [[nodiscard]] params::BackendChoice backend_of(const std::string& name);
 
-/// An option, or a name of words without one, of earlier versions: not in --help, and refused with what `now` holds.
+/// A flag of earlier versions, or where the name has no dashes a word beside the options: not in --help, and refused
+/// with what `now` says.
 void add_retired_option(CLI::App& command, const std::string& name, const std::string& now);
 
 /// Prints "talus: error: MESSAGE" as exactly one line on stderr and returns `code`.

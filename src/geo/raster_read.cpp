@@ -243,7 +243,7 @@ Result<Raster> read_over_terrain(const std::string& file, const Crs& terrain_crs
 
 }  // namespace
 
-Result<Raster> read_terrain_raster(const std::string& file, int band, const std::optional<Extent>& extent, bool local) {
+Result<RasterSource> open_terrain(const std::string& file, int band, bool local) {
     const Crs own = local ? Crs::own_metres() : Crs();
     TALUS_ASSIGN(auto source, open_raster(file, band, local ? &own : nullptr));
     if (local && !source.crs.local) {
@@ -251,11 +251,17 @@ Result<Raster> read_terrain_raster(const std::string& file, int band, const std:
             fmt::format("{}: is in {}; crs = \"local\" is for a terrain that states no coordinate reference system",
                         file, source.crs.label())};
     }
+    return source;
+}
+
+Result<Raster> read_terrain_raster(const std::string& file, int band, const std::optional<Extent>& extent, bool local) {
+    TALUS_ASSIGN(const auto source, open_terrain(file, band, local));
     return read_cells(file, source, extent, Kind::elevations);
 }
 
-Result<Raster> read_coarse_terrain(const std::string& file, int band, const std::optional<Extent>& extent, int factor) {
-    TALUS_ASSIGN(auto source, open_raster(file, band));
+Result<Raster> read_coarse_terrain(const std::string& file, int band, const std::optional<Extent>& extent, int factor,
+                                   bool local) {
+    TALUS_ASSIGN(const auto source, open_terrain(file, band, local));
     return read_cells(file, source, extent, Kind::elevations, factor);
 }
 

@@ -30,6 +30,9 @@ struct RasterSource {
 /// the CRS of a file that states none; without it that is an error.
 [[nodiscard]] Result<RasterSource> open_raster(const std::string& file, int band, const Crs* otherwise = nullptr);
 
+/// Of elevations. `local`: as for read_terrain_raster.
+[[nodiscard]] Result<RasterSource> open_terrain(const std::string& file, int band, bool local);
+
 /// Metres per unit of a name as rasters state it ("ft"); empty: not known.
 [[nodiscard]] std::optional<double> metres_per(std::string name);
 

@@ -30,8 +30,8 @@ double stored(const RasterSource& source, double value) {
 
 }  // namespace
 
-Result<TerrainFrame> read_terrain_frame(const std::string& file, int band) {
-    TALUS_ASSIGN(const RasterSource source, open_raster(file, band));
+Result<TerrainFrame> read_terrain_frame(const std::string& file, int band, bool local) {
+    TALUS_ASSIGN(const RasterSource source, open_terrain(file, band, local));
     TerrainFrame frame;
     frame.crs = source.crs;
     frame.geometry = {.x_min = source.x_min,

@@ -43,7 +43,7 @@ Status write_products(const scene::Scene& scene, const run::RunResult& result, c
     LayerDefinition layers(title_of(scene, result), scene.crs.wkt);
     TALUS_TRY(write_maps(scene, result, folder, layers));
     TALUS_TRY(write_terrain(scene, result.observation.maps.peak_depth.geometry.extent(), folder, layers));
-    add_maps_over_time(scene, result, frame_times, layers);
+    add_maps_over_time(scene, result, frame_times, folder, layers);
     TALUS_TRY(write_tables(scene, result, folder, changed));
     TALUS_TRY(write_vectors(scene, result, folder, layers, missing));
     TALUS_TRY(layers.write(folder));

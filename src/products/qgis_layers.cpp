@@ -2,7 +2,9 @@
 #include <algorithm>
 #include <cctype>
 #include <cmath>
+#include <filesystem>
 #include <string>
+#include <system_error>
 #include <vector>
 
 #include <fmt/format.h>
@@ -57,25 +59,30 @@ Status write_terrain(const scene::Scene& scene, const Extent& place, const std::
 }
 
 void add_maps_over_time(const scene::Scene& scene, const run::RunResult& result, const std::vector<double>& times,
-                        LayerDefinition& layers) {
-    const auto& formats = scene.spec.outputs.series;
-    const auto has = [&](const char* format) {
-        return std::find(formats.begin(), formats.end(), format) != formats.end();
+                        const std::filesystem::path& folder, LayerDefinition& layers) {
+    // A format that could not be written has left nothing.
+    const auto has = [&](const std::string& file) {
+        std::error_code ignored;
+        return std::filesystem::exists(folder / "series" / file, ignored);
     };
-    if (times.empty() || !(has("geotiff") || has("netcdf"))) return;
+    const bool netcdf = has("maps.nc");
+    if (times.empty()) return;
     constexpr std::size_t most = 100;  // QGIS opens each as a layer
     const std::size_t step = (times.size() + most - 1) / most;
     const double interval = scene.spec.outputs.series_interval;
     for (const SeriesQuantity& quantity : series_quantities) {
+        const std::string geotiff = quantity.name + std::string(".tif");
+        const bool in_geotiff = has(geotiff);
+        if (!in_geotiff && !netcdf) continue;
         const report::HazardMap& map = peak_map_of(quantity);
         const double greatest = report::greatest(result.observation.maps.*map.grid) * map.factor;
         std::vector<LayerDefinition::Frame> frames;
         for (std::size_t k = 0; k < times.size(); k += step) {
-            frames.push_back({fmt::format("{} s", std::round(100 * times[k]) / 100),
-                              has("geotiff") ? fmt::format("./series/{}.tif", quantity.name)
-                                             : fmt::format("NETCDF:\"./series/maps.nc\":{}", quantity.name),
-                              qgis_style(map, greatest, k + 1), times[k],
-                              k + step < times.size() ? times[k + step] : times.back() + interval});
+            frames.push_back(
+                {fmt::format("{} s", std::round(100 * times[k]) / 100),
+                 in_geotiff ? "./series/" + geotiff : fmt::format("NETCDF:\"./series/maps.nc\":{}", quantity.name),
+                 qgis_style(map, greatest, k + 1), times[k],
+                 k + step < times.size() ? times[k + step] : times.back() + interval});
         }
         std::string title = quantity.name;
         title.front() = static_cast<char>(std::toupper(static_cast<unsigned char>(title.front())));

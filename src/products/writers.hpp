@@ -28,7 +28,7 @@ namespace talus::products {
 /// Adds the maps over time to `layers`, from the GeoTIFF or else the NetCDF files of the folder's series. `times`: of
 /// all frames, s; empty: there are none.
 void add_maps_over_time(const scene::Scene& scene, const run::RunResult& result, const std::vector<double>& times,
-                        LayerDefinition& layers);
+                        const std::filesystem::path& folder, LayerDefinition& layers);
 
 /// front.csv, run_out.csv, buildings.csv, structures_over_time.csv, timeseries.csv, and erosion.csv, gauges.csv and
 /// discharge.csv where there is a bed, a gauge or a cross-section. A value that does not exist is an empty field.

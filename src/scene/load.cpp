@@ -109,8 +109,8 @@ void note_terrain_file(const geo::TerrainFrame& frame, Scene& scene) {
 
 Status load_terrain(const ParsedScene& parsed, Scene& scene) {
     const params::TerrainSpec& spec = parsed.spec.terrain;
-    Result<geo::Raster> raster =
-        geo::read_terrain_raster(spec.file, spec.band, spec.extent, spec.crs == params::CrsChoice::local);
+    const bool local = spec.crs == params::CrsChoice::local;
+    Result<geo::Raster> raster = geo::read_terrain_raster(spec.file, spec.band, spec.extent, local);
     if (!raster) {
         std::string message = parsed.at("terrain.file") + ": " + raster.error().message;
         std::error_code code;
@@ -120,7 +120,7 @@ Status load_terrain(const ParsedScene& parsed, Scene& scene) {
         return Error{message};
     }
     record_input("terrain", spec.file, scene);
-    TALUS_ASSIGN(const geo::TerrainFrame frame, geo::read_terrain_frame(spec.file, spec.band));
+    TALUS_ASSIGN(const geo::TerrainFrame frame, geo::read_terrain_frame(spec.file, spec.band, local));
     note_terrain_file(frame, scene);
     scene.crs = raster->crs;
     scene.vertical_unit = raster->vertical_unit;

@@ -244,7 +244,8 @@ Status write_file(const fs::path& file, const std::string& text) {
 /// Writes the terrain on coarser cells into the new folder, and names that.
 Status write_coarse_terrain(ParsedScene& parsed, const fs::path& folder, int factor, std::vector<std::string>& notes) {
     params::TerrainSpec& spec = parsed.spec.terrain;
-    const auto raster = geo::read_coarse_terrain(spec.file, spec.band, spec.extent, factor);
+    const auto raster =
+        geo::read_coarse_terrain(spec.file, spec.band, spec.extent, factor, spec.crs == params::CrsChoice::local);
     if (!raster) return Error{parsed.at("terrain.file") + ": " + raster.error().message};
     const fs::path file = fs::absolute(folder) / "terrain.tif";
     const std::string unit = raster->vertical_unit == "not stated" ? "" : raster->vertical_unit;
@@ -266,7 +267,7 @@ Result<NewScene> write_new_scene(const NewSceneOptions& options) {
     std::vector<std::string> notes;
     NewFolder folder(options.folder, options.folder_exists);
 
-    const auto frame = geo::read_terrain_frame(terrain.file, terrain.band);
+    const auto frame = geo::read_terrain_frame(terrain.file, terrain.band, options.local);
     if (!frame) return Error{parsed.at("terrain.file") + ": " + frame.error().message};
     int factor = 1;
     if (options.cell) {

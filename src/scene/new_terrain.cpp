@@ -78,8 +78,9 @@ Result<Extent> choose_extent(const ParsedScene& parsed, const geo::TerrainFrame&
                 "matters with --extent XMIN YMIN XMAX YMAX (the release lies at {}), or larger cells with --cell M",
                 parsed.at("terrain.file"), spec.file, most_searched / 1e6, cell, extent_text(footprint))};
         }
-        Result<geo::Raster> raster = factor > 1 ? geo::read_coarse_terrain(spec.file, spec.band, part, factor)
-                                                : geo::read_terrain_raster(spec.file, spec.band, part);
+        const bool local = spec.crs == params::CrsChoice::local;
+        Result<geo::Raster> raster = factor > 1 ? geo::read_coarse_terrain(spec.file, spec.band, part, factor, local)
+                                                : geo::read_terrain_raster(spec.file, spec.band, part, local);
         if (!raster) return Error{parsed.at("terrain.file") + ": " + raster.error().message};
         Scene scene;
         scene.spec = parsed.spec;

@@ -64,7 +64,7 @@ TEST(Run, OnTheCodeOfACardSaysSoInTheManifest) {
 TEST(Run, WritesContoursTracksAndDischargeWhereTheyAreAskedFor) {
     const SmallScene scene;
     scene.replace("[[observation]]",
-                  "[[cross_section]]\nname = \"ditch\"\nline_m = [[824195, 825150], [824195, 825050]]\n"
+                  "[[cross_section]]\nname = \"ditch\"\nline_m = [[824210, 825150], [824210, 825050]]\n"
                   "interval_s = 0.25\n[[observation]]");
     const auto outcome = run_program({"run", "slope.toml", "-o", "result", "--contours", "peak_depth=0.05,0.1",
                                       "--contours", "peak_speed=1", "--tracks"},

@@ -40,7 +40,7 @@ TEST(SceneNew, TakesLayersAPartAndLargerCells) {
                                       "--dem-layer",
                                       "terrain",
                                       "--release",
-                                      "release.geojson|layername=release",
+                                      "release.geojson|layername=layer",
                                       "--release-feature",
                                       "0",
                                       "--thickness-m",

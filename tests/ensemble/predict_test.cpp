@@ -174,7 +174,7 @@ TEST_F(ObservedScene, ObservationsThatCannotBeAreRefused) {
     write_valley("[[arrival]]\nchainage_m = 5000\ntime_s = 10\n");
     EXPECT_THAT(load_error(), HasSubstr("arrival[0].chainage_m = 5000 lies beyond the flow path"));
     write_valley("[[run_up]]\nx_m = 1\ny_m = 2\nheight_m = 3\n");
-    EXPECT_THAT(load_error(), HasSubstr("run_up[0].x_m: (1.0, 2.0) is not on the terrain"));
+    EXPECT_THAT(load_error(), HasSubstr("run_up[0].x_m: (1.00, 2.00) is not on the terrain"));
     write_valley("[[damage]]\nbuilding = \"mill\"\n");
     EXPECT_THAT(load_error(), HasSubstr("damage[0].building = \"mill\" is no building of the scene"));
     write_valley("[[deposit_outline]]\nfile = \"nix.geojson\"\n");

@@ -141,19 +141,20 @@ TEST_F(Products, QgisDoesNotOpenTablesWithoutFeatures) {
 
 TEST_F(Products, QgisShowsMapsOverTime) {
     scene::Scene scene = *scene_;
-    const auto layers_with = [&](const std::vector<double>& times) {
+    const auto layers_with = [&](const std::vector<double>& times, const std::vector<std::string>& series) {
         const TemporaryFolder folder;
+        std::filesystem::create_directory(folder.path() / "series");
+        for (const std::string& file : series) (void)test::write_text(folder.file("series/" + file), "");
         EXPECT_TRUE(write_products(scene, *result_, folder.path(), {}, {}, times).ok());
         return test::read_text(folder.path() / "results.qlr");
     };
     const std::vector<double> times = {0, 1, 2.5};
-    EXPECT_THAT(layers_with(times), testing::Not(testing::HasSubstr("over time"))) << "the scene asks for no maps";
-    scene.spec.outputs.series = {"netcdf"};
-    EXPECT_THAT(layers_with(times), testing::HasSubstr("NETCDF:&quot;./series/maps.nc&quot;:depth"));
+    EXPECT_THAT(layers_with(times, {}), testing::Not(testing::HasSubstr("over time"))) << "there are no maps";
+    EXPECT_THAT(layers_with(times, {"maps.nc"}), testing::HasSubstr("NETCDF:&quot;./series/maps.nc&quot;:depth"));
 
-    scene.spec.outputs.series = {"netcdf", "geotiff"};
+    const std::vector<std::string> both = {"maps.nc", "depth.tif", "speed.tif", "pressure.tif"};
     scene.spec.outputs.series_interval = 1;
-    CPLXMLNode* tree = CPLParseXMLString(layers_with(times).c_str());
+    CPLXMLNode* tree = CPLParseXMLString(layers_with(times, both).c_str());
     ASSERT_NE(tree, nullptr);
     std::vector<std::string> seen;
     for (CPLXMLNode* layer = CPLGetXMLNode(tree, "=qlr.maplayers")->psChild; layer != nullptr; layer = layer->psNext) {
@@ -169,7 +170,7 @@ TEST_F(Products, QgisShowsMapsOverTime) {
 
     std::vector<double> many;
     for (int k = 0; k < 250; ++k) many.push_back(60 * k);
-    const std::string text = layers_with(many);
+    const std::string text = layers_with(many, both);
     std::size_t count = 0;
     for (std::size_t at = 0; (at = text.find("<fixedRange>", at)) != std::string::npos; ++at) ++count;
     EXPECT_EQ(count, 3U * 84) << "every third frame of depth, speed and pressure";

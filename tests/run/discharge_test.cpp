@@ -18,6 +18,21 @@ class Discharge : public scene::SceneFolder, public testing::WithParamInterface<
         return fmt::format("[[cross_section]]\nname = \"{}\"\nline_m = [[{}, {}], [{}, {}]]\n{}", name, west + x,
                            south + 20, west + x + 15, south + 180, more);
     }
+    /// The debris that lies at the end above such a section, m3: a film of it stays behind.
+    static double left_above(const observe::Observation& o, double x) {
+        const Grid<float>& deposit = o.maps.deposit_depth;
+        const GridGeometry& cells = deposit.geometry;
+        double volume = 0;
+        for (int row = 0; row < cells.rows; ++row) {
+            for (int column = 0; column < cells.columns; ++column) {
+                const PlanPoint centre = cells.centre(column, row);
+                const float depth = deposit.values[cells.index(column, row)];
+                const bool above = centre.x < west + x + 15 * (centre.y - south - 20) / 160;
+                if (above && depth > 0) volume += depth * cells.cell * cells.cell;
+            }
+        }
+        return volume;
+    }
     [[nodiscard]] scene::Scene loaded(const std::string& text, std::vector<std::string> overrides = {}) const {
         write_terrain("dem.tif", [](double x, double) { return 200 - 0.5 * (x - west); });
         write("scene.toml", "[terrain]\nfile = \"dem.tif\"\n[material]\nfriction_coefficient = 0.2\n" + text);
@@ -41,7 +56,7 @@ TEST_P(Discharge, IsTheVolumeReleasedBelowItAndNothingAboveIt) {
     ASSERT_EQ(o.cross_sections.size(), 3U);
     const observe::DischargeRecord &below = o.cross_sections[0], &above = o.cross_sections[1],
                                    &back = o.cross_sections[2];
-    EXPECT_NEAR(below.passed, o.volume_released, 1e-3 * o.volume_released);
+    EXPECT_NEAR(below.passed, o.volume_released - left_above(o, 100), 1e-3 * o.volume_released);
     EXPECT_NEAR(below.passed, -back.passed, 1e-3 * o.volume_released) << "the line is drawn the other way";
     EXPECT_NEAR(above.passed, 0, 1e-6 * o.volume_released);
     EXPECT_TRUE(std::isnan(above.peak_time));
@@ -53,7 +68,7 @@ TEST_P(Discharge, IsTheVolumeReleasedBelowItAndNothingAboveIt) {
         EXPECT_LE(std::abs(row.discharge), std::abs(below.peak_discharge) + 1e-9);
     }
     EXPECT_EQ(before, result->simulated_time);
-    EXPECT_GT(below.rows.size(), 20U);
+    EXPECT_EQ(below.rows.size(), static_cast<std::size_t>(std::ceil(result->simulated_time))) << "one a second";
 }
 
 TEST_P(Discharge, OfASteadyInflowIsItsHydrograph) {
@@ -61,8 +76,8 @@ TEST_P(Discharge, OfASteadyInflowIsItsHydrograph) {
     const scene::Scene scene =
         loaded(fmt::format("[[inflow]]\nline_m = [[{0}, {1}], [{0}, {2}]]\nhydrograph = \"flow.csv\"\n", west + 30,
                            south + 95, south + 105) +
-                   section("below", 90, "interval_s = 2\n"),
-               {"solver.particle_spacing_m=0.5", "solver.end_time_s=24", "material.friction_coefficient=0.45",
+                   section("below", 60, "interval_s = 2\n"),
+               {"solver.particle_spacing_m=0.5", "solver.end_time_s=24", "material.friction_coefficient=0.3",
                 "material.turbulent_friction_mps2=200"});
     const auto result = run_scene(scene, {});
     ASSERT_TRUE(result) << result.error().message;

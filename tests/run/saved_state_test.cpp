@@ -191,7 +191,9 @@ TEST_F(SavedState, OfSomethingElseIsRefusedAndSaysWhatIsDifferent) {
 }
 
 TEST_F(SavedState, ThereIsNoneOfTheDepthAveragedModel) {
-    const Status status = check_state_can_be_saved(loaded({"solver.model=depth_averaged"}));
+    scene::Scene scene = loaded({});
+    scene.spec.solver.model = params::ModelChoice::depth_averaged;
+    const Status status = check_state_can_be_saved(scene);
     ASSERT_FALSE(status);
     EXPECT_THAT(status.error().message, HasSubstr("needs particles"));
 }

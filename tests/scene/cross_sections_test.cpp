@@ -41,7 +41,7 @@ TEST_F(CrossSections, ThatCannotBeAreRefused) {
     EXPECT_THAT(error_of("[[cross_section]]\nname = \"x\"\n"), HasSubstr("line_m"));
     EXPECT_THAT(error_of("[[cross_section]]\nline_m = [[824050, 825050]]\n"), HasSubstr("has 1 places"));
     EXPECT_THAT(error_of("[[cross_section]]\nline_m = [[824050, 825050], [1, 2]]\n"),
-                HasSubstr("cross_section[0].line_m: (1.0, 2.0) is not on the terrain"));
+                HasSubstr("cross_section[0].line_m: (1.00, 2.00) is not on the terrain"));
     EXPECT_THAT(error_of("[[cross_section]]\nline_m = [[824050, 825050], [824050, 825050]]\n"),
                 HasSubstr("twice in a row"));
     const std::string one = "[[cross_section]]\nname = \"bridge\"\nline_m = [[824050, 825050], [824060, 825100]]\n";
