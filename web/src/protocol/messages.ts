@@ -336,7 +336,7 @@ export interface State {
   end_time_s: number;
   /** When the run is expected to be over, from the motion of its debris; null before the first step and while debris outlasts the estimate. */
   expected_end_s: number | null;
-  /** Wall time until then as fast as it goes; null likewise. */
+  /** Wall time until then as fast as it goes; null likewise, and below 1 % done. */
   wall_remaining_s: number | null;
   /** Steps taken. */
   step: number;
