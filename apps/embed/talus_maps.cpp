@@ -97,6 +97,7 @@ void add(float value, Several several, float& sum) {
 std::vector<double> points_in(double from, double cell, int count, double x_min, double spacing) {
     const auto first_in = [&](int k) { return std::ceil((from + k * cell - x_min) / spacing - 0.5); };
     std::vector<double> points;
+    points.reserve(static_cast<std::size_t>(count));
     for (int k = 0; k < count; ++k) points.push_back(first_in(k + 1) - first_in(k));
     return points;
 }

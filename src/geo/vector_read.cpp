@@ -349,7 +349,8 @@ Result<PolygonLayer> read_polygons(const std::string& file, const std::string& l
     PolygonLayer result;
     result.reprojection = source.reprojection;
     source.layer->ResetReading();
-    const bool geographic = source.layer->GetSpatialRef()->IsGeographic() != 0;
+    const OGRSpatialReference* const reference = source.layer->GetSpatialRef();
+    const bool geographic = !terrain_crs.local && reference != nullptr && reference->IsGeographic() != 0;
     for (GIntBig number = 1;; ++number) {
         TALUS_ASSIGN(auto read, next_feature(file, source, number));
         if (!read.feature) break;

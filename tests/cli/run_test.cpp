@@ -63,6 +63,7 @@ TEST(Run, OnTheCodeOfACardSaysSoInTheManifest) {
 
 TEST(Run, WritesContoursTracksAndDischargeWhereTheyAreAskedFor) {
     const SmallScene scene;
+    scene.replace("end_time_s = 1", "end_time_s = 2");
     scene.replace("[[observation]]",
                   "[[cross_section]]\nname = \"ditch\"\nline_m = [[824210, 825150], [824210, 825050]]\n"
                   "interval_s = 0.25\n[[observation]]");
