@@ -319,10 +319,27 @@ TEST_F(ParseScene, EveryCommentedDefaultOfAWrittenSceneIsValid) {
     spec.releases[0].file = "release.gpkg";
     spec.releases[0].thickness = 2;
     std::istringstream lines(write_scene(spec));
-    // Of these, one of several keys must be given.
-    const std::set<std::string> with_a_choice = {
-        "bed",           "zone", "inflow",  "barrier", "barrier_opening", "gauge",
-        "cross_section", "zoom", "trigger", "alarm",   "superelevation",  "observation"};
+    // Of these, one of several keys must be given, or one that has no default.
+    const std::set<std::string> with_a_choice = {"bed",
+                                                 "zone",
+                                                 "inflow",
+                                                 "barrier",
+                                                 "barrier_opening",
+                                                 "gauge",
+                                                 "cross_section",
+                                                 "zoom",
+                                                 "trigger",
+                                                 "alarm",
+                                                 "observation",
+                                                 "superelevation",
+                                                 "arrival",
+                                                 "run_up",
+                                                 "deposit_depth",
+                                                 "damage",
+                                                 "observed_run_out",
+                                                 "deposit_outline",
+                                                 "affected_area",
+                                                 "elevation_change"};
     std::string text, current, section;
     while (std::getline(lines, current)) {
         const bool commented_header = current.starts_with("# [") && current.ends_with(']');  // no line of prose
