@@ -9,7 +9,8 @@
 namespace talus::params {
 
 /// A commented scene file. Values that differ from the default are set; every other key is there as a comment with its
-/// default ("none" where there is none), unit, allowed range and help. `header`: comment lines at the top, without the "# ".
+/// default ("none" where there is none), unit, allowed range and help. `header`: comment lines at the top, without the
+/// "# ".
 [[nodiscard]] std::string write_scene(const SceneSpec& spec, const std::string& header = "");
 
 /// The same with no other comments than those of the keys that matter first.

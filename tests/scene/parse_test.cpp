@@ -339,7 +339,8 @@ TEST_F(ParseScene, EveryCommentedDefaultOfAWrittenSceneIsValid) {
                                                  "observed_run_out",
                                                  "deposit_outline",
                                                  "affected_area",
-                                                 "elevation_change"};
+                                                 "elevation_change",
+                                                 "variant"};
     std::string text, current, section;
     while (std::getline(lines, current)) {
         const bool commented_header = current.starts_with("# [") && current.ends_with(']');  // no line of prose
