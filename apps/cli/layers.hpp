@@ -28,7 +28,7 @@ void add_layers(CLI::App& command, std::string& layers, bool real_time);
                                                 const std::vector<std::string>& overrides, const std::string& layers);
 
 struct LayersCost {
-    double layers;
+    double layers = 0;
     run::Cost cost;
 };
 

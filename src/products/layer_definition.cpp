@@ -58,12 +58,12 @@ void LayerDefinition::add(Parts& parts, const std::string& name, const std::stri
 void LayerDefinition::add_over_time(const std::string& group, const std::vector<Frame>& frames) {
     over_time_.tree +=
         fmt::format("    <layer-tree-group name=\"{}\" checked=\"Qt::Unchecked\" expanded=\"0\">\n", escape(group));
-    for (auto frame = frames.rbegin(); frame != frames.rend(); ++frame) {
-        add(over_time_, frame->name, frame->source, "raster", "gdal", frame->style, true,
+    for (const Frame& frame : std::vector<Frame>(frames.rbegin(), frames.rend())) {  // the latest on top
+        add(over_time_, frame.name, frame.source, "raster", "gdal", frame.style, true,
             fmt::format(
                 "   <temporal mode=\"0\" enabled=\"1\" fetchMode=\"0\"><fixedRange><start>{}</start><end>{}</end>"
                 "</fixedRange></temporal>\n",
-                date_text(frame->begin), date_text(frame->end - 0.001)));  // ranges include their ends
+                date_text(frame.begin), date_text(frame.end - 0.001)));  // ranges include their ends
     }
     over_time_.tree += "    </layer-tree-group>\n";
 }

@@ -126,7 +126,7 @@ Result<OutputFolder> OutputFolder::create(const fs::path& final_path, bool force
         if (!fs::create_directory(missing, failed) && failed) {
             return Error{fmt::format("{}: cannot be made: {}", missing.string(), failed.message())};
         }
-        folder.made_above_.push_back(std::move(missing));
+        folder.made_above_.insert(folder.made_above_.begin(), std::move(missing));
     }
     if (!fs::is_directory(parent, failed)) {
         return Error{fmt::format("{}: cannot be made in {}: {}", folder.final_.string(), parent.string(),
@@ -161,7 +161,7 @@ OutputFolder::~OutputFolder() {
     if (!temporary_.empty()) fs::remove_all(temporary_, ignored);
     if (lock_ >= 0) close(lock_);
     // What another run has put into them meanwhile keeps them.
-    for (auto made = made_above_.rbegin(); made != made_above_.rend(); ++made) fs::remove(*made, ignored);
+    for (const fs::path& made : made_above_) fs::remove(made, ignored);
 }
 
 Status OutputFolder::commit() {

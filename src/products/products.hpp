@@ -35,7 +35,7 @@ class OutputFolder {
   private:
     OutputFolder() = default;
     std::filesystem::path temporary_, final_;
-    std::vector<std::filesystem::path> made_above_;  ///< from the top; empty once committed
+    std::vector<std::filesystem::path> made_above_;  ///< the lowest first; empty once committed
     bool force_ = false;
     int lock_ = -1;  ///< held on the temporary folder while it is written; -1: the file system has no locks
 };

@@ -17,7 +17,8 @@ double told_left(double elapsed, double left) {
     return elapsed >= least_share_done * (elapsed + left) ? left : unknown;
 }
 
-WorkClock::WorkClock(std::vector<double> efforts, int at_once) : at_once_(std::max(1, at_once)), start_(unknown) {
+WorkClock::WorkClock(const std::vector<double>& efforts, int at_once)
+    : at_once_(std::max(1, at_once)), start_(unknown) {
     pieces_.reserve(efforts.size());
     for (const double effort : efforts) pieces_.push_back({.effort = effort});
 }

@@ -19,7 +19,7 @@ constexpr double least_share_done = 0.01;
 class WorkClock {
   public:
     /// `efforts`: wall times of the runs over each other, in the order in which they begin; a run beyond them has 1.
-    explicit WorkClock(std::vector<double> efforts, int at_once = 1);
+    explicit WorkClock(const std::vector<double>& efforts, int at_once = 1);
 
     /// An earlier call made this run in `wall_time` s.
     void found(std::size_t run, double wall_time);
