@@ -239,7 +239,7 @@ class DocumentWriter {
         for (const Field& field : route.query) operation["parameters"].push_back(parameter("query", field));
         if (route.who == Caller::control || route.who == Caller::person) {
             const Field header{
-                .key = "Talus-Person", .optional = true, .type = {.kind = Kind::string}, .doc = all_.person};
+                .key = "Talus-Person", .optional = true, .type = of_kind(Kind::string), .doc = all_.person};
             operation["parameters"].push_back(parameter("header", header));
         }
         if (route.body) operation["requestBody"] = {{"required", true}, {"content", content(*route.body)}};

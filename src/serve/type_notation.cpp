@@ -29,7 +29,8 @@ class Reader {
     Result<Type> either() {
         TALUS_ASSIGN(Type first, with_brackets());
         if (!take("|")) return first;
-        Type all{.kind = Kind::either, .parts = {std::move(first)}};
+        Type all = of_kind(Kind::either);
+        all.parts.push_back(std::move(first));
         do {
             TALUS_ASSIGN(Type next, with_brackets());
             all.parts.push_back(std::move(next));
@@ -84,7 +85,7 @@ class Reader {
         TALUS_ASSIGN(Type type, single());
         for (;;) {
             if (take("[]")) {
-                Type list{.kind = Kind::list};
+                Type list = of_kind(Kind::list);
                 list.parts.push_back(std::move(type));
                 type = std::move(list);
             } else if ((type.kind == Kind::list || type.kind == Kind::number || type.kind == Kind::integer) &&
@@ -109,7 +110,7 @@ class Reader {
         if (take("'")) {
             const std::size_t end = text_.find('\'', at_);
             if (end == std::string_view::npos) return expected("a closing quote");
-            Type text{.kind = Kind::text, .name = std::string(text_.substr(at_, end - at_))};
+            Type text = of_kind(Kind::text, std::string(text_.substr(at_, end - at_)));
             at_ = end + 1;
             return text;
         }
@@ -118,17 +119,17 @@ class Reader {
         const std::string name(word());
         if (name.empty()) return expected("a type");
         if (std::isdigit(static_cast<unsigned char>(name.front())) != 0) {
-            return Type{.kind = Kind::whole, .name = name};
+            return of_kind(Kind::whole, name);
         }
         if (name == "Record" || name == "Partial") return generic(name == "Record" ? Kind::record : Kind::partial);
         for (const auto& [known, kind] : words) {
-            if (name == known) return Type{.kind = kind};
+            if (name == known) return of_kind(kind);
         }
-        return Type{.kind = Kind::name, .name = name};
+        return of_kind(Kind::name, name);
     }
 
     Result<Type> tuple() {
-        Type type{.kind = Kind::tuple};
+        Type type = of_kind(Kind::tuple);
         do {
             TALUS_ASSIGN(Type part, either());
             type.parts.push_back(std::move(part));
@@ -138,7 +139,7 @@ class Reader {
     }
 
     Result<Type> fields() {
-        Type type{.kind = Kind::fields};
+        Type type = of_kind(Kind::fields);
         do {
             Field field;
             field.key = std::string(word());
@@ -153,7 +154,7 @@ class Reader {
     }
 
     Result<Type> generic(Kind kind) {
-        Type type{.kind = kind};
+        Type type = of_kind(kind);
         TALUS_TRY(need("<"));
         for (int i = 0; i < (kind == Kind::record ? 2 : 1); ++i) {
             if (i > 0) TALUS_TRY(need(","));
@@ -175,6 +176,13 @@ std::string joined(const std::vector<Type>& parts, std::string_view between) {
 }
 
 }  // namespace
+
+Type of_kind(Kind kind, std::string name) {
+    Type type;
+    type.kind = kind;
+    type.name = std::move(name);
+    return type;
+}
 
 bool Type::may_be_null() const {
     return kind == Kind::null || (kind == Kind::either && std::any_of(parts.begin(), parts.end(), [](const Type& part) {

@@ -36,10 +36,10 @@ struct Type {
         either
     };
     Kind kind = Kind::null;
-    std::string name{};         ///< of a name; what a text or a whole number is
-    std::vector<Type> parts{};  ///< items of a list; key and value of a record; alternatives
-    std::vector<Field> fields{};
-    std::optional<std::pair<double, double>> bounds{};  ///< of a number, or of the length of a list
+    std::string name;         ///< of a name; what a text or a whole number is
+    std::vector<Type> parts;  ///< items of a list; key and value of a record; alternatives
+    std::vector<Field> fields;
+    std::optional<std::pair<double, double>> bounds;  ///< of a number, or of the length of a list
 
     [[nodiscard]] bool may_be_null() const;
 };
@@ -50,6 +50,9 @@ struct Field {
     Type type;
     std::string doc;  ///< a sentence; may be empty
 };
+
+/// `name`: of a name; what a text or a whole number is.
+[[nodiscard]] Type of_kind(Type::Kind kind, std::string name = "");
 
 /// Error: what was expected, and where.
 [[nodiscard]] Result<Type> parse_type(std::string_view text);
