@@ -2,7 +2,7 @@
 import assert from "node:assert/strict";
 import { spawn } from "node:child_process";
 import { createHash } from "node:crypto";
-import { existsSync, mkdirSync, readFileSync } from "node:fs";
+import { existsSync, mkdirSync, readFileSync, writeFileSync } from "node:fs";
 import { join } from "node:path";
 import { createInterface } from "node:readline";
 
@@ -192,10 +192,15 @@ export class Run {
   }
   /** The same once it is `one` again. */
   async back(page, clip, one, what) {
+    let seen;
     await until(async () => {
-      const seen = await this.colours(page, clip);
+      seen = await this.colours(page, clip);
       return seen.hash === one.hash ? 0 : page.evaluate(largestDifference, [one.png.toString("base64"), seen.png.toString("base64")]);
-    }, (difference) => difference <= sameShade, what);
+    }, (difference) => difference <= sameShade, what).catch((error) => {
+      writeFileSync(join(this.output, "expected.png"), one.png);
+      writeFileSync(join(this.output, "seen.png"), seen.png);
+      throw error;
+    });
   }
   async shot(page, name) {
     await page.screenshot({ path: join(this.output, `${name}.png`) });

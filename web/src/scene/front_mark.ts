@@ -36,7 +36,10 @@ class FrontMark {
     const speed = twin.shownState(name)?.front_velocity_mps ?? 0;
     const before = this.to;
     this.to = twin.names.value && twin.shown.value.includes(name) && speed > slowest_mps ? this.follow.front(name) : null;
-    if (this.to && !before) this.at.set(...this.to);
+    if (this.to && !before) {
+      this.at.set(...this.to);
+      this.arrived = false;
+    }
     if (this.to) this.text.textContent = `Front ${quantity(speed, "m/s")}`;
     if (this.element.hidden === (this.to === null)) return;
     this.element.hidden = this.to === null;
