@@ -148,8 +148,7 @@ std::string types_text(const Protocol& all, const std::string& group) {
         if (type.is) about += "Is " + type_text(*type.is) + ". ";
         if (!type.doc.empty()) about += type.doc + (type.doc.ends_with('.') ? " " : ". ");
         if (!type.extends.empty())
-            about +=
-                fmt::format("It has the keys of {} as well. ", type_text({.kind = Kind::name, .name = type.extends}));
+            about += fmt::format("It has the keys of {} as well. ", type_text(of_kind(Kind::name, type.extends)));
         for (const std::string& section : {type.section, type.input}) {
             if (!section.empty()) about += fmt::format("It has the live keys of `[[{}]]`. ", section);
         }
@@ -167,7 +166,7 @@ std::string union_table(const UnionDescription& all) {
     for (const Variant& variant : all.variants) {
         std::string keys = parameters_text(variant.fields);
         const auto add = [&](const std::string& more) { keys += (keys.empty() ? "" : ". ") + more; };
-        if (!variant.extends.empty()) add("those of " + type_text({.kind = Kind::name, .name = variant.extends}));
+        if (!variant.extends.empty()) add("those of " + type_text(of_kind(Kind::name, variant.extends)));
         if (!variant.partial.empty()) add(fmt::format("Live keys of `[[{}]]`", variant.partial));
         text += fmt::format("| `{}` | {} | {} |\n", fmt::join(variant.names, "`, `"), cell(keys), cell(variant.when));
     }
