@@ -72,14 +72,18 @@ class FrontMark {
     // At its end labels stand as they do wherever it came from.
     const arrived = there && !this.arrived;
     this.arrived = there;
-    if (!arrived && (now_ms < this.cleared.at_ms + room.every_ms || Math.hypot(x - this.cleared.x, y - this.cleared.y) < room.from_px)) return;
+    if (!arrived && Math.hypot(x - this.cleared.x, y - this.cleared.y) < room.from_px) return;
+    if (!arrived && now_ms < this.cleared.at_ms + room.every_ms) {
+      stage.invalidate();  // names make room a little later, also when nothing else moves
+      return;
+    }
     this.cleared.x = x;
     this.cleared.y = y;
     this.cleared.at_ms = now_ms;
     const view = stage.views.get(this.name);
     if (!view) return;
     view.labels.placed = false;
-    if (arrived) stage.invalidate();
+    stage.invalidate();
   }
 }
 
