@@ -100,14 +100,16 @@ class _Clock:
         if simulated >= end:
             left = 0.0
         elif remaining is None and (expected is not None or simulated < 0.01 * end):  # too little is done to say
-            return f"[{'':40}] {simulated:.1f} s"
+            return f"{self._bar()} {simulated:.1f} s"
         elif remaining is None:  # debris outlasts the estimate: at the mean pace until the end
             left = gone * (end - simulated) / max(simulated, 1e-9)
         else:
             left = remaining * min(1.0, (end - simulated) / max(expected - simulated, 1e-9))
         self._share = max(self._share, gone / max(gone + left, 1e-9))
-        done = "#" * int(40 * self._share)
-        return f"[{done:40}] {simulated:.1f} s, about {int(left) // 60}:{int(left) % 60:02} left"
+        return f"{self._bar()} {simulated:.1f} s, about {int(left) // 60}:{int(left) % 60:02} left"
+
+    def _bar(self) -> str:
+        return f"[{'#' * int(40 * self._share):40}]"
 
 
 def run(

@@ -357,12 +357,13 @@ class StudyTest(unittest.TestCase):
                 alone = talus.run(folder / "scene.toml", {key: 0.2, **count}, end_time=4, progress=True)
                 talus.run(folder / "scene.toml", {"solver.end_time_s": 1.003, **count}, progress=True)  # to its own end
             lines = [line for line in said.getvalue().replace("\x1b[K", "").split("\r") if line]
-            for line in lines:
-                self.assertRegex(line, r"^\[#* *\] \d+\.\d s, about \d+:\d\d left")
+            for line in lines:  # on a fast machine too little is done at first to say what is left
+                self.assertRegex(line, r"^\[#* *\] \d+\.\d s(, about \d+:\d\d left)?$")
             first = [k for k, line in enumerate(lines) if k > 0 and line.count("#") < lines[k - 1].count("#")]
             self.assertEqual(len(first), 1, "each bar only grows")
             for bar in (lines[: first[0]], lines[first[0] :]):
                 self.assertEqual(bar[-1].count("#"), 40)
+                self.assertRegex(bar[-1], r", about 0:00 left$")
             self.assertEqual(alone.hash, results[0].hash)
             self.assertEqual(set(alone.maps), set(talus.UNITS))
 
