@@ -9,6 +9,7 @@
 #include "validate/kinds/kinds.hpp"
 #include "validate/laws.hpp"
 #include "validate/measure.hpp"
+#include "validate/rows.hpp"
 #include "validate/set_up.hpp"
 
 namespace talus::validate {
@@ -122,28 +123,23 @@ Result<Outcome> compute(const DamSpec& spec, const Setting& setting, const Watch
                 {{"computed", Series::Style::marks, {}, {}}}};
     const double finest = *std::min_element(spec.spacings.begin(), spec.spacings.end());
     for (const double spacing : spec.spacings) {
-        const std::string name = fmt::format("spacing {:g} m", spacing);
-        watch.say(name);
-        const Measured m = measure(spec, spacing, setting, watch);
-        if (!m.problem.empty()) outcome.notes.push_back(name + ": " + m.problem);
-        outcome.notes.push_back(fmt::format("{}: {} particles, cells of {:g} m", name, m.particles, spec.cell));
-        const bool coarse = spacing > finest;
-        outcome.measurements.push_back({"depth_l2", name, m.l2, {}, coarse});
-        outcome.measurements.push_back({"depth_max", name, m.largest, {}, coarse});
+        Rows rows(watch, outcome, fmt::format("spacing {:g} m", spacing), spacing > finest);
+        const Measured m = rows.noted(measure(spec, spacing, setting, watch));
+        rows.note(fmt::format("{} particles, cells of {:g} m", m.particles, spec.cell));
+        rows.add("depth_l2", m.l2);
+        rows.add("depth_max", m.largest);
         if (profile.series.empty()) profile.series.push_back({"exact", Series::Style::dashed, m.place, m.exact});
-        profile.series.push_back({name, Series::Style::line, m.place, m.thickness});
+        profile.series.push_back({rows.name(), Series::Style::line, m.place, m.thickness});
         trend.series[0].x.push_back(spacing);
         trend.series[0].y.push_back(m.l2);
     }
     for (const double cells : spec.grids) {
-        const std::string name = grid_name(static_cast<int>(cells));
-        watch.say(name);
-        const Measured m = measure_grid(spec, static_cast<int>(cells), setting, watch);
-        if (!m.problem.empty()) outcome.notes.push_back(name + ": " + m.problem);
-        outcome.measurements.push_back({"depth_l2", name, m.l2, {}});
-        outcome.measurements.push_back({"depth_max", name, m.largest, {}});
-        outcome.measurements.push_back({"front", name, m.front, m.exact_front});
-        profile.series.push_back({name, Series::Style::line, m.place, m.thickness});
+        Rows rows(watch, outcome, grid_name(static_cast<int>(cells)));
+        const Measured m = rows.noted(measure_grid(spec, static_cast<int>(cells), setting, watch));
+        rows.add("depth_l2", m.l2);
+        rows.add("depth_max", m.largest);
+        rows.add("front", m.front, m.exact_front);
+        profile.series.push_back({rows.name(), Series::Style::line, m.place, m.thickness});
     }
     outcome.charts = {profile, trend};
     return outcome;

@@ -13,6 +13,7 @@
 #include "validate/flume.hpp"
 #include "validate/kinds/kinds.hpp"
 #include "validate/measure.hpp"
+#include "validate/rows.hpp"
 #include "validate/set_up.hpp"
 
 namespace talus::validate {
@@ -343,22 +344,21 @@ Result<Outcome> compute(const FlumeSpec& spec, const Setting& setting, const Wat
             const std::string kind = obstacle == Obstacle::none   ? "open channel"
                                      : obstacle == Obstacle::wall ? "wall"
                                                                   : "ramp";
-            watch.say(kind + end);
-            const Measured m = run(spec, obstacle, spacing, setting, watch);
-            if (!m.problem.empty()) outcome.notes.push_back(kind + end + ": " + m.problem);
+            Rows rows(watch, outcome, kind + end, coarse);
+            const Measured m = rows.noted(run(spec, obstacle, spacing, setting, watch));
             if (obstacle != Obstacle::none) {
-                outcome.measurements.push_back({"run_up", kind + end, m.run_up, std::nullopt, coarse});
+                rows.add("run_up", m.run_up);
                 continue;
             }
             if (spacing > 0) outcome.notes.push_back(fmt::format("spacing {:g} m: {} particles", spacing, m.particles));
             for (const double station : spec.stations) {
                 const std::string name = fmt::format("{:g} m{}", station, end);
-                outcome.measurements.push_back({"arrival_time", name, m.arrival(station), std::nullopt, coarse});
+                Rows(outcome, name, coarse).add("arrival_time", m.arrival(station));
                 chart.series.push_back({name, Series::Style::line, m.time, m.thickness.at(station)});
             }
             for (const auto& [station, time] : spec.samples) {
-                outcome.measurements.push_back({"thickness", fmt::format("{:g} m at {:g} s{}", station, time, end),
-                                                m.mean(station, time, spec.mean_time), std::nullopt, coarse});
+                Rows(outcome, fmt::format("{:g} m at {:g} s{}", station, time, end), coarse)
+                    .add("thickness", m.mean(station, time, spec.mean_time));
             }
         }
     }

@@ -10,6 +10,7 @@
 #include "validate/kinds/kinds.hpp"
 #include "validate/laws.hpp"
 #include "validate/measure.hpp"
+#include "validate/rows.hpp"
 #include "validate/set_up.hpp"
 
 namespace talus::validate {
@@ -221,16 +222,13 @@ Result<Outcome> compute(const ColumnSpec& spec, const Setting& setting, const Wa
         for (std::size_t k = 0; k < spec.aspects.size(); ++k) {
             const double aspect = spec.aspects[k];
             const std::string aspect_name = fmt::format("a = {:g}", aspect);
-            const std::string name = fmt::format("{}, {}", aspect_name, by_resolution);
-            watch.say(name);
-            const Measured m = measure(spec, aspect, resolution, setting, watch);
-            if (!m.problem.empty()) outcome.notes.push_back(name + ": " + m.problem);
-            const bool coarse = resolution < finest;
+            Rows rows(watch, outcome, fmt::format("{}, {}", aspect_name, by_resolution), resolution < finest);
+            const Measured m = rows.noted(measure(spec, aspect, resolution, setting, watch));
             const double law = run_out_law(spec, aspect);
-            outcome.measurements.push_back({"run_out", name, m.run_out, law, coarse});
-            outcome.measurements.push_back({"run_out_edge", name, m.run_out_edge, law, coarse});
-            outcome.measurements.push_back({"height", name, m.height, expected_height(spec, aspect, m.height), coarse});
-            outcome.measurements.push_back({"residual_speed", name, m.residual_speed, {}, coarse});
+            rows.add("run_out", m.run_out, law);
+            rows.add("run_out_edge", m.run_out_edge, law);
+            rows.add("height", m.height, expected_height(spec, aspect, m.height));
+            rows.add("residual_speed", m.residual_speed);
             run_out.x.push_back(aspect);
             run_out.y.push_back(m.run_out);
             height.x.push_back(aspect);
@@ -247,20 +245,18 @@ Result<Outcome> compute(const ColumnSpec& spec, const Setting& setting, const Wa
     }
     Series by_grid{"depth-averaged", Series::Style::marks, {}, {}}, grid_height = by_grid;
     for (const double aspect : spec.aspects) {
-        const std::string name = fmt::format("depth-averaged, a = {:g}", aspect);
-        watch.say(name);
-        const Measured m = measure_grid(spec, aspect, setting, watch);
-        if (!m.problem.empty()) outcome.notes.push_back(name + ": " + m.problem);
+        Rows rows(watch, outcome, fmt::format("depth-averaged, a = {:g}", aspect));
+        const Measured m = rows.noted(measure_grid(spec, aspect, setting, watch));
         const double law = run_out_law(spec, aspect);
-        outcome.measurements.push_back({"run_out", name, m.run_out, law});
-        outcome.measurements.push_back({"run_out_edge", name, m.run_out_edge, law});
-        outcome.measurements.push_back({"height", name, m.height, expected_height(spec, aspect, m.height)});
-        outcome.measurements.push_back({"residual_speed", name, m.residual_speed, {}});
+        rows.add("run_out", m.run_out, law);
+        rows.add("run_out_edge", m.run_out_edge, law);
+        rows.add("height", m.height, expected_height(spec, aspect, m.height));
+        rows.add("residual_speed", m.residual_speed);
         by_grid.x.push_back(aspect);
         by_grid.y.push_back(m.run_out);
         grid_height.x.push_back(aspect);
         grid_height.y.push_back(m.height);
-        profiles.series.push_back({name, Series::Style::dashed, m.distance, m.thickness});
+        profiles.series.push_back({rows.name(), Series::Style::dashed, m.distance, m.thickness});
     }
     run_outs.series.push_back(by_grid);
     heights.series.push_back(grid_height);

@@ -8,6 +8,7 @@
 #include "sim/sources/seed.hpp"
 #include "validate/grid_flow.hpp"
 #include "validate/kinds/kinds.hpp"
+#include "validate/rows.hpp"
 #include "validate/set_up.hpp"
 
 namespace talus::validate {
@@ -51,8 +52,7 @@ terrain::Bed bed_of(const GrowthSpec& spec, std::size_t cells) {
 }
 
 void compute_one(const GrowthSpec& spec, double spacing, const Setting& setting, const Watch& watch, Outcome& outcome) {
-    const std::string name = fmt::format("spacing {:.3g} m", spacing);
-    watch.say(name);
+    Rows rows(watch, outcome, fmt::format("spacing {:.3g} m", spacing));
     params::MaterialSpec material = setting.material;
     material.friction_coefficient = spec.friction;
     material.building_friction_coefficient = 0;
@@ -76,7 +76,7 @@ void compute_one(const GrowthSpec& spec, double spacing, const Setting& setting,
         for (std::uint32_t i = 0; i < state.count; ++i) sum += dot(state.velocity.at(i), down);
         return sum / state.count;
     };
-    Series computed{name, Series::Style::line, {}, {}}, grown = computed;
+    Series computed{rows.name(), Series::Style::line, {}, {}}, grown = computed;
     double jolt = 0;
     if (!trial.advance_to(spec.end, [&] {
             computed.x.push_back(state.time);
@@ -85,25 +85,24 @@ void compute_one(const GrowthSpec& spec, double spacing, const Setting& setting,
             grown.y.push_back(static_cast<double>(state.count) / static_cast<double>(points.size()));
             jolt = std::max(jolt, law.speed(state.time) - computed.y.back());
         })) {
-        outcome.notes.push_back(name + ": " + trial.problem());
+        rows.note(trial.problem());
         return;
     }
     const double area = incline.terrain().cell() * incline.terrain().cell();
     double lost = 0;
     for (const float eroded : trial.ground().bed.eroded) lost += eroded * area;
     const double gained = state.entrained * trial.model().particle_volume();
-    outcome.measurements.push_back({"volume", name, grown.y.back(), law.volume(state.time)});
-    outcome.measurements.push_back({"speed", name, computed.y.back(), law.speed(state.time)});
-    outcome.measurements.push_back({"missing", name, gained > 0 ? lost / gained - 1 : not_computed, {}});
-    outcome.measurements.push_back({"jolt", name, jolt, {}});
+    rows.add("volume", grown.y.back(), law.volume(state.time));
+    rows.add("speed", computed.y.back(), law.speed(state.time));
+    rows.add("missing", gained > 0 ? lost / gained - 1 : not_computed);
+    rows.add("jolt", jolt);
     outcome.charts[0].series.push_back(std::move(computed));
     outcome.charts[1].series.push_back(std::move(grown));
 }
 
 /// The same by the depth-averaged model, on a strip of the plane.
 void compute_grid(const GrowthSpec& spec, double cell, const Setting& setting, const Watch& watch, Outcome& outcome) {
-    const std::string name = "depth-averaged";
-    watch.say(name);
+    Rows rows(watch, outcome, "depth-averaged");
     const double acceleration = sim::Model{}.gravity * (std::sin(spec.slope) - spec.friction * std::cos(spec.slope));
     const GrowthLaw law{acceleration, spec.growth_rate};
     const double furthest = 0.5 * acceleration * spec.end * spec.end;
@@ -122,11 +121,11 @@ void compute_grid(const GrowthSpec& spec, double cell, const Setting& setting, c
         }
         return momentum / mass;
     };
-    Series computed{name, Series::Style::line, {}, {}}, grown = computed;
+    Series computed{rows.name(), Series::Style::line, {}, {}}, grown = computed;
     while (solver.time() < spec.end - 1e-9) {
         const Status stepped = solver.advance(spec.end - solver.time());
         if (!stepped || watch.stopped()) {
-            outcome.notes.push_back(name + ": " + (stepped ? "stopped by the user" : stepped.error().message));
+            rows.note(stepped ? "stopped by the user" : stepped.error().message);
             return;
         }
         entrained += bed.entrain(solver);
@@ -137,10 +136,10 @@ void compute_grid(const GrowthSpec& spec, double cell, const Setting& setting, c
         jolt = std::max(jolt, law.speed(solver.time()) - computed.y.back());
     }
     const double gained = solver.volume() - before;
-    outcome.measurements.push_back({"volume", name, grown.y.back(), law.volume(spec.end)});
-    outcome.measurements.push_back({"speed", name, computed.y.back(), law.speed(spec.end)});
-    outcome.measurements.push_back({"missing", name, gained > 0 ? entrained / gained - 1 : not_computed, {}});
-    outcome.measurements.push_back({"jolt", name, jolt, {}});
+    rows.add("volume", grown.y.back(), law.volume(spec.end));
+    rows.add("speed", computed.y.back(), law.speed(spec.end));
+    rows.add("missing", gained > 0 ? entrained / gained - 1 : not_computed);
+    rows.add("jolt", jolt);
     outcome.charts[0].series.push_back(std::move(computed));
     outcome.charts[1].series.push_back(std::move(grown));
 }

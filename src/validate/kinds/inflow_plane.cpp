@@ -9,6 +9,7 @@
 #include "validate/grid_flow.hpp"
 #include "validate/kinds/kinds.hpp"
 #include "validate/measure.hpp"
+#include "validate/rows.hpp"
 #include "validate/set_up.hpp"
 
 namespace talus::validate {
@@ -79,18 +80,15 @@ StreamMeans means_between(const GridIncline& incline, double first, double last)
 
 void compute_grid(const PlaneSpec& spec, const Setting& setting, const Watch& watch, double first, double last,
                   Outcome& outcome) {
-    const char* name = "depth-averaged";
-    watch.say(name);
-    const GridStream stream = grid_stream(spec, setting.material, std::tan(spec.slope), spec.spacing,
-                                          1.6 * spec.velocity * spec.time, spec.time, watch);
-    if (!stream.problem.empty()) outcome.notes.push_back(std::string(name) + ": " + stream.problem);
+    Rows rows(watch, outcome, "depth-averaged");
+    const GridStream stream = rows.noted(grid_stream(spec, setting.material, std::tan(spec.slope), spec.spacing,
+                                                     1.6 * spec.velocity * spec.time, spec.time, watch));
     const StreamMeans means = means_between(stream.incline, first, last);
     const double width = spec.width * spec.spacing;
-    outcome.measurements.push_back({"volume", name, stream.volume, stream.law_volume});
-    outcome.measurements.push_back({"thickness", name, means.thickness, spec.thickness});
-    outcome.measurements.push_back({"velocity", name, means.velocity, spec.velocity});
-    outcome.measurements.push_back(
-        {"discharge", name, means.thickness * means.velocity * width, spec.thickness * spec.velocity * width});
+    rows.add("volume", stream.volume, stream.law_volume);
+    rows.add("thickness", means.thickness, spec.thickness);
+    rows.add("velocity", means.velocity, spec.velocity);
+    rows.add("discharge", means.thickness * means.velocity * width, spec.thickness * spec.velocity * width);
 
     // v^2 = xi h (sin - f cos) and q = v h.
     const double discharge = spec.thickness * spec.velocity;
@@ -102,8 +100,7 @@ void compute_grid(const PlaneSpec& spec, const Setting& setting, const Watch& wa
     const double length = 0.8 * discharge / law * time;
     const GridStream far = grid_stream(spec, voellmy, spec.voellmy_friction, 5 * spec.spacing, length, time, watch);
     if (!far.problem.empty()) outcome.notes.push_back("depth-averaged, Voellmy: " + far.problem);
-    outcome.measurements.push_back(
-        {"normal_depth", name, means_between(far.incline, 0.6 * length, 0.8 * length).thickness, law});
+    rows.add("normal_depth", means_between(far.incline, 0.6 * length, 0.8 * length).thickness, law);
 }
 
 Result<Outcome> compute(const PlaneSpec& spec, const Setting& setting, const Watch& watch) {

@@ -10,6 +10,7 @@
 #include "depth/solver.hpp"
 #include "sim/sources/seed.hpp"
 #include "validate/kinds/kinds.hpp"
+#include "validate/rows.hpp"
 #include "validate/set_up.hpp"
 
 namespace talus::validate {
@@ -153,15 +154,18 @@ Measured measure_grid(const LakeSpec& spec, const Shape& shape, const Watch& wat
     return measured;
 }
 
+void report(const Measured& m, Rows& rows) {
+    rows.add("depth", m.depth, m.expected_depth);
+    rows.add("unevenness", m.unevenness);
+    rows.add("residual_speed", m.speed);
+}
+
 Result<Outcome> compute(const LakeSpec& spec, const Setting& setting, const Watch& watch) {
     Outcome outcome;
     for (const Shape& shape : shapes) {
-        watch.say(shape.name);
-        const Measured m = measure(spec, shape, setting, watch);
-        if (!m.problem.empty()) outcome.notes.push_back(std::string(shape.name) + ": " + m.problem);
-        outcome.measurements.push_back({"depth", shape.name, m.depth, m.expected_depth});
-        outcome.measurements.push_back({"unevenness", shape.name, m.unevenness, {}});
-        outcome.measurements.push_back({"residual_speed", shape.name, m.speed, {}});
+        Rows rows(watch, outcome, shape.name);
+        const Measured m = rows.noted(measure(spec, shape, setting, watch));
+        report(m, rows);
         outcome.charts.push_back(
             {shape.name,
              fmt::format("Surface of a lake at rest, ground {}", shape.name),
@@ -171,12 +175,8 @@ Result<Outcome> compute(const LakeSpec& spec, const Setting& setting, const Watc
     }
     outcome.charts[1].name = "stepped";
     for (const Shape& shape : shapes) {
-        const std::string name = std::string("depth-averaged, ") + shape.name;
-        const Measured m = measure_grid(spec, shape, watch);
-        if (!m.problem.empty()) outcome.notes.push_back(name + ": " + m.problem);
-        outcome.measurements.push_back({"depth", name, m.depth, m.expected_depth});
-        outcome.measurements.push_back({"unevenness", name, m.unevenness, {}});
-        outcome.measurements.push_back({"residual_speed", name, m.speed, {}});
+        Rows rows(watch, outcome, std::string("depth-averaged, ") + shape.name);
+        report(rows.noted(measure_grid(spec, shape, watch)), rows);
     }
     return outcome;
 }

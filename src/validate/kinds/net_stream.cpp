@@ -7,6 +7,7 @@
 #include "terrain/barrier.hpp"
 #include "validate/kinds/kinds.hpp"
 #include "validate/laws.hpp"
+#include "validate/rows.hpp"
 #include "validate/set_up.hpp"
 
 namespace talus::validate {
@@ -113,15 +114,13 @@ Result<Outcome> compute(const NetSpec& spec, const Setting& setting, const Watch
     for (const double passing : spec.passing) {
         double end = 0;
         for (const double spacing : spec.spacings) {
-            const std::string name = fmt::format("passing = {:g}, spacing {:g} m", passing, spacing);
-            watch.say(name);
-            Measured m = measure(spec, passing, spacing, setting, watch);
-            if (!m.problem.empty()) outcome.notes.push_back(name + ": " + m.problem);
-            const bool coarse = spacing > finest;
-            outcome.measurements.push_back({"impulse", name, m.impulse, m.lost, coarse});
-            outcome.measurements.push_back({"coarse_through", name, m.coarse, {}, coarse});
-            outcome.measurements.push_back({"passed_layers", name, m.layers, passing / (1 - passing), coarse});
-            m.history.name = name;
+            Rows rows(watch, outcome, fmt::format("passing = {:g}, spacing {:g} m", passing, spacing),
+                      spacing > finest);
+            Measured m = rows.noted(measure(spec, passing, spacing, setting, watch));
+            rows.add("impulse", m.impulse, m.lost);
+            rows.add("coarse_through", m.coarse);
+            rows.add("passed_layers", m.layers, passing / (1 - passing));
+            m.history.name = rows.name();
             if (!m.history.x.empty()) end = std::max(end, m.history.x.back());
             chart.series.push_back(std::move(m.history));
         }

@@ -13,6 +13,7 @@
 #include "sim/sources/seed.hpp"
 #include "validate/kinds/kinds.hpp"
 #include "validate/point_mass.hpp"
+#include "validate/rows.hpp"
 #include "validate/set_up.hpp"
 
 namespace talus::validate {
@@ -314,28 +315,25 @@ Result<Outcome> compute(const ProfileSpec& spec, const Setting& setting, const W
     const double gravity = sim::Model{}.gravity, line_front = energy_line_front(spec, world, friction);
     std::optional<double> law_front, law_speed;
     if (std::isfinite(line_front)) law_front = line_front;
-    if (spec.probe > 0) {
-        law_speed = speed_of_point_mass(spec, friction, gravity);
-    }
+    if (spec.probe > 0) law_speed = speed_of_point_mass(spec, friction, gravity);
 
     Outcome outcome;
     Chart chart{"speed", "Greatest speed along the ground", "distance, m", "speed, m/s", {}};
-    const auto report = [&](const std::string& name, const End& end, Record& record) {
+    const auto report = [&](Rows rows, const End& end, Record& record) {
         const bool good = end.problem.empty();
-        if (!good) outcome.notes.push_back(name + ": " + end.problem);
-        if (end.left) outcome.notes.push_back(name + ": measured until debris left the terrain");
+        if (!good) rows.note(end.problem);
+        if (end.left) rows.note("measured until debris left the terrain");
         if (record.too_fast > 0) {
-            outcome.notes.push_back(
-                fmt::format("{}: at most {:.2g} % of the debris at once are faster than free fall allows", name,
-                            100 * record.too_fast));
+            rows.note(fmt::format("at most {:.2g} % of the debris at once are faster than free fall allows",
+                                  100 * record.too_fast));
         }
         const double front = good ? record.front(end.left) : not_computed;
-        outcome.measurements.push_back({"speed_share", name, good ? record.speed_share : not_computed, {}});
-        outcome.measurements.push_back({"energy_gain", name, good ? record.energy_gain() : not_computed, {}});
-        outcome.measurements.push_back({"volume_error", name, good ? record.volume_error : not_computed, {}});
-        outcome.measurements.push_back({"front", name, front, law_front});
-        if (law_speed) outcome.measurements.push_back({"speed", name, good ? record.speed() : not_computed, law_speed});
-        chart.series.push_back(record.greatest_speeds(name));
+        rows.add("speed_share", good ? record.speed_share : not_computed);
+        rows.add("energy_gain", good ? record.energy_gain() : not_computed);
+        rows.add("volume_error", good ? record.volume_error : not_computed);
+        rows.add("front", front, law_front);
+        if (law_speed) rows.add("speed", good ? record.speed() : not_computed, law_speed);
+        chart.series.push_back(record.greatest_speeds(rows.name()));
         return front;
     };
 
@@ -345,18 +343,17 @@ Result<Outcome> compute(const ProfileSpec& spec, const Setting& setting, const W
     sim::Ground ground(world.terrain, make_slice(world.terrain, width, 10), model.support_radius);
     TALUS_ASSIGN(sim::State seeded, seed_releases(model, ground, {world.release(spec, width)}));
     outcome.notes.push_back(fmt::format("{} particles", seeded.count));
-    watch.say("particles");
+    const Rows by_particles(watch, outcome, "particles");
     Record of_particles(spec, world, gravity);
     Trial trial({std::move(model), std::move(ground), std::move(seeded)}, watch);
     const End end = run_particles(trial, spec, world, of_particles);
-    report("particles", end, of_particles);
+    report(by_particles, end, of_particles);
 
     double least = std::numeric_limits<double>::infinity(), most = -least;
     for (const double cell : spec.cells) {
-        const std::string name = fmt::format("depth-averaged, cells of {:g} m", cell);
-        watch.say(name);
+        const Rows rows(watch, outcome, fmt::format("depth-averaged, cells of {:g} m", cell));
         Record record(spec, world, gravity);
-        const double front = report(name, run_grid(spec, cell, setting, watch, world, record), record);
+        const double front = report(rows, run_grid(spec, cell, setting, watch, world, record), record);
         least = std::isnan(front) ? front : std::min(least, front);
         most = std::max(most, front);
     }

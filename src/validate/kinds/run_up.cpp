@@ -8,6 +8,7 @@
 #include "validate/kinds/kinds.hpp"
 #include "validate/laws.hpp"
 #include "validate/measure.hpp"
+#include "validate/rows.hpp"
 #include "validate/set_up.hpp"
 
 namespace talus::validate {
@@ -101,11 +102,9 @@ Result<Outcome> compute(const RunUpSpec& spec, const Setting& setting, const Wat
             ramp ? fmt::format("{:.0f} degree ramp", spec.ramp_angle * 180 / std::numbers::pi) : "vertical wall";
         Series computed{obstacle, Series::Style::marks, {}, {}};
         for (const double froude : spec.froudes) {
-            const std::string name = fmt::format("{}, Fr = {:g}", obstacle, froude);
-            watch.say(name);
-            const Measured m = measure(spec, ramp, froude, setting, watch);
-            if (!m.problem.empty()) outcome.notes.push_back(name + ": " + m.problem);
-            outcome.measurements.push_back({"run_up", name, m.run_up, momentum_jump(froude)});
+            Rows rows(watch, outcome, fmt::format("{}, Fr = {:g}", obstacle, froude));
+            const Measured m = rows.noted(measure(spec, ramp, froude, setting, watch));
+            rows.add("run_up", m.run_up, momentum_jump(froude));
             computed.x.push_back(froude);
             computed.y.push_back(m.run_up);
         }

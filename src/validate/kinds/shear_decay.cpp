@@ -5,6 +5,7 @@
 
 #include "sim/sources/seed.hpp"
 #include "validate/kinds/kinds.hpp"
+#include "validate/rows.hpp"
 #include "validate/set_up.hpp"
 
 namespace talus::validate {
@@ -97,13 +98,11 @@ Result<Outcome> compute(const ShearSpec& spec, const Setting& setting, const Wat
         chart.series[0].y.push_back(std::exp(-share_of_life * k / 100));
     }
     const auto add = [&](double viscosity, double time_step, double spacing) {
-        const std::string name =
-            fmt::format("mu = {:g}, dt = 1/{:.0f} s, spacing {:g} m", viscosity, 1 / time_step, spacing);
-        watch.say(name);
-        const Measured m = measure(spec, viscosity, time_step, spacing, setting, watch);
-        if (!m.problem.empty()) outcome.notes.push_back(name + ": " + m.problem);
-        outcome.measurements.push_back({"kinematic_viscosity", name, m.viscosity, m.law});
-        chart.series.push_back({name, Series::Style::line, m.time, m.amplitude});
+        Rows rows(watch, outcome,
+                  fmt::format("mu = {:g}, dt = 1/{:.0f} s, spacing {:g} m", viscosity, 1 / time_step, spacing));
+        const Measured m = rows.noted(measure(spec, viscosity, time_step, spacing, setting, watch));
+        rows.add("kinematic_viscosity", m.viscosity, m.law);
+        chart.series.push_back({rows.name(), Series::Style::line, m.time, m.amplitude});
     };
     for (const double viscosity : spec.viscosities) add(viscosity, spec.time_step, spec.spacing);
     for (const double time_step : spec.time_steps) add(spec.viscosities.front(), time_step, spec.spacing);

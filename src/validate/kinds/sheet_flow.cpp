@@ -9,6 +9,7 @@
 #include "validate/kinds/kinds.hpp"
 #include "validate/laws.hpp"
 #include "validate/measure.hpp"
+#include "validate/rows.hpp"
 #include "validate/set_up.hpp"
 
 namespace talus::validate {
@@ -155,27 +156,26 @@ Result<Outcome> compute(const SheetSpec& spec, const Setting& setting, const Wat
     Chart chart{"profile", "Velocity by height above the ground", "velocity (m/s)", "height (m)", {}};
     for (const double slope : spec.slopes) {
         for (const double share : spec.start_shares) {
-            const std::string name =
-                fmt::format("slope {:.3g} degrees, from {:g} of the law's velocity", slope / radians_per_degree, share);
-            watch.say(name);
-            const Measured m = measure(spec, slope, share, setting, watch);
-            if (!m.problem.empty()) outcome.notes.push_back(name + ": " + m.problem);
+            Rows rows(watch, outcome,
+                      fmt::format("slope {:.3g} degrees, from {:g} of the law's velocity", slope / radians_per_degree,
+                                  share));
+            const Measured m = rows.noted(measure(spec, slope, share, setting, watch));
             const bool computed = !m.velocity.empty();
             const ErrorNorms norms = computed ? error_norms(m.velocity, m.law) : ErrorNorms{not_computed, not_computed};
-            outcome.measurements.push_back({"mean_velocity", name, m.mean, m.law_mean});
-            outcome.measurements.push_back({"surface_velocity", name, computed ? m.velocity.back() : not_computed,
-                                            computed ? m.law.back() : not_computed});
-            outcome.measurements.push_back({"profile_l2", name, norms.relative_l2, std::nullopt});
-            outcome.measurements.push_back({"profile_max", name, norms.relative_max, std::nullopt});
+            rows.add("mean_velocity", m.mean, m.law_mean);
+            rows.add("surface_velocity", computed ? m.velocity.back() : not_computed,
+                     computed ? m.law.back() : not_computed);
+            rows.add("profile_l2", norms.relative_l2);
+            rows.add("profile_max", norms.relative_max);
             if (share == spec.start_shares.front()) {
                 chart.series.push_back({fmt::format("law, {:.3g} degrees", slope / radians_per_degree),
                                         Series::Style::dashed, m.law, m.height});
             }
-            chart.series.push_back({name, Series::Style::marks, m.velocity, m.height});
+            chart.series.push_back({rows.name(), Series::Style::marks, m.velocity, m.height});
             if (spec.law == "bagnold") continue;  // a law of what happens inside
-            const Measured grid = measure_grid(spec, slope, share, setting, watch);
-            if (!grid.problem.empty()) outcome.notes.push_back("depth-averaged, " + name + ": " + grid.problem);
-            outcome.measurements.push_back({"mean_velocity", "depth-averaged, " + name, grid.mean, grid.law_mean});
+            Rows by_grid(outcome, "depth-averaged, " + rows.name());
+            const Measured grid = by_grid.noted(measure_grid(spec, slope, share, setting, watch));
+            by_grid.add("mean_velocity", grid.mean, grid.law_mean);
         }
     }
     outcome.charts.push_back(chart);

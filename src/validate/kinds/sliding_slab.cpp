@@ -6,6 +6,7 @@
 #include "core/angle.hpp"
 #include "sim/sources/seed.hpp"
 #include "validate/kinds/kinds.hpp"
+#include "validate/rows.hpp"
 #include "validate/set_up.hpp"
 
 namespace talus::validate {
@@ -142,19 +143,18 @@ Result<Outcome> compute(const SlabSpec& spec, const Setting& setting, const Watc
                 {}};
     Series law{"law", Series::Style::dashed, {}, {}}, computed{"computed", Series::Style::marks, {}, {}};
     for (const Variant& variant : variants_of(spec, setting.solver)) {
-        watch.say(variant.name);
-        const Measured measured = measure(spec, variant, setting, watch);
-        if (!measured.problem.empty()) outcome.notes.push_back(variant.name + ": " + measured.problem);
+        Rows rows(watch, outcome, variant.name);
+        const Measured measured = rows.noted(measure(spec, variant, setting, watch));
         const double expected = coulomb_acceleration(variant);
         if (expected > 0) {
-            outcome.measurements.push_back({"acceleration", variant.name, measured.acceleration, expected});
-            outcome.measurements.push_back({"clearance", variant.name, measured.clearance, {}});
+            rows.add("acceleration", measured.acceleration, expected);
+            rows.add("clearance", measured.clearance);
             law.x.push_back(expected);
             law.y.push_back(expected);
             computed.x.push_back(expected);
             computed.y.push_back(measured.acceleration);
         } else {
-            outcome.measurements.push_back({"drift", variant.name, measured.drift, {}});
+            rows.add("drift", measured.drift);
         }
     }
     chart.series = {law, computed};

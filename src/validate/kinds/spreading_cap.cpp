@@ -9,6 +9,7 @@
 #include "validate/kinds/kinds.hpp"
 #include "validate/laws.hpp"
 #include "validate/measure.hpp"
+#include "validate/rows.hpp"
 #include "validate/set_up.hpp"
 
 namespace talus::validate {
@@ -140,29 +141,24 @@ Result<Outcome> compute(const CapSpec& spec, const Setting& setting, const Watch
                  {}};
     const double finest = *std::min_element(spec.spacings.begin(), spec.spacings.end());
     for (const double spacing : spec.spacings) {
-        const std::string name = fmt::format("spacing {:g} m", spacing);
-        watch.say(name);
-        const Measured m = measure(spec, spacing, setting, watch);
-        if (!m.problem.empty()) outcome.notes.push_back(name + ": " + m.problem);
-        outcome.notes.push_back(fmt::format("{}: {} particles, cells of {:g} m", name, m.particles, spec.cell));
-        const bool coarse = spacing > finest;
-        outcome.measurements.push_back({"depth_l2", name, m.l2, {}, coarse});
-        outcome.measurements.push_back({"depth_max", name, m.largest, {}, coarse});
+        Rows rows(watch, outcome, fmt::format("spacing {:g} m", spacing), spacing > finest);
+        const Measured m = rows.noted(measure(spec, spacing, setting, watch));
+        rows.note(fmt::format("{} particles, cells of {:g} m", m.particles, spec.cell));
+        rows.add("depth_l2", m.l2);
+        rows.add("depth_max", m.largest);
         if (along.series.empty()) {
             along.series.push_back({"exact", Series::Style::dashed, m.along_place, m.along_exact});
             across.series.push_back({"exact", Series::Style::dashed, m.across_place, m.across_exact});
         }
-        along.series.push_back({name, Series::Style::line, m.along_place, m.along});
-        across.series.push_back({name, Series::Style::line, m.across_place, m.across});
+        along.series.push_back({rows.name(), Series::Style::line, m.along_place, m.along});
+        across.series.push_back({rows.name(), Series::Style::line, m.across_place, m.across});
     }
     for (const double cells : spec.grids) {
-        const std::string name = grid_name(static_cast<int>(cells));
-        watch.say(name);
-        const Measured m = measure_grid(spec, static_cast<int>(cells), setting, watch);
-        if (!m.problem.empty()) outcome.notes.push_back(name + ": " + m.problem);
-        outcome.measurements.push_back({"depth_l2", name, m.l2, {}});
-        outcome.measurements.push_back({"depth_max", name, m.largest, {}});
-        along.series.push_back({name, Series::Style::line, m.along_place, m.along});
+        Rows rows(watch, outcome, grid_name(static_cast<int>(cells)));
+        const Measured m = rows.noted(measure_grid(spec, static_cast<int>(cells), setting, watch));
+        rows.add("depth_l2", m.l2);
+        rows.add("depth_max", m.largest);
+        along.series.push_back({rows.name(), Series::Style::line, m.along_place, m.along});
     }
     outcome.charts = {along, across};
     return outcome;

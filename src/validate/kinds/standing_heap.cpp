@@ -8,6 +8,7 @@
 #include "terrain/release.hpp"
 #include "validate/kinds/kinds.hpp"
 #include "validate/measure.hpp"
+#include "validate/rows.hpp"
 #include "validate/set_up.hpp"
 
 namespace talus::validate {
@@ -118,18 +119,15 @@ Result<Outcome> compute(const HeapSpec& spec, const Setting& setting, const Watc
     Chart profiles{"profile", "Profile of the heap at the end", "distance from the axis, m", "thickness, m", {}};
     for (const double share : spec.angle_shares) {
         for (const double time_step : spec.time_steps) {
-            const std::string name =
-                fmt::format("{:.0f} % of the friction angle, dt = 1/{:.0f} s", 100 * share, 1 / time_step);
-            watch.say(name);
-            const Measured m = measure(spec, share, time_step, setting, watch);
-            if (!m.problem.empty()) outcome.notes.push_back(name + ": " + m.problem);
-            outcome.notes.push_back(fmt::format("{}: {} particles", name, m.particles));
-            outcome.measurements.push_back(
-                {share < 1 ? "height_loss" : "flowing_height_loss", name, m.height_loss, {}});
-            outcome.measurements.push_back({"settling_height_loss", name, m.settling_loss, {}});
-            outcome.measurements.push_back({"residual_speed", name, m.residual_speed, {}});
-            over_time.series.push_back({name, Series::Style::line, m.time, m.height});
-            profiles.series.push_back({name, Series::Style::line, m.distance, m.thickness});
+            Rows rows(watch, outcome,
+                      fmt::format("{:.0f} % of the friction angle, dt = 1/{:.0f} s", 100 * share, 1 / time_step));
+            const Measured m = rows.noted(measure(spec, share, time_step, setting, watch));
+            rows.note(fmt::format("{} particles", m.particles));
+            rows.add(share < 1 ? "height_loss" : "flowing_height_loss", m.height_loss);
+            rows.add("settling_height_loss", m.settling_loss);
+            rows.add("residual_speed", m.residual_speed);
+            over_time.series.push_back({rows.name(), Series::Style::line, m.time, m.height});
+            profiles.series.push_back({rows.name(), Series::Style::line, m.distance, m.thickness});
         }
     }
     outcome.charts = {over_time, profiles};

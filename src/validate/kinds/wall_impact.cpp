@@ -6,6 +6,7 @@
 #include "sim/sources/seed.hpp"
 #include "validate/kinds/kinds.hpp"
 #include "validate/laws.hpp"
+#include "validate/rows.hpp"
 #include "validate/set_up.hpp"
 
 namespace talus::validate {
@@ -103,20 +104,19 @@ Result<Outcome> compute(const ImpactSpec& spec, const Setting& setting, const Wa
     Chart chart{"force", "Force on the wall", "time, s", "force, kN/m", {}};
     const double gravity = sim::Model{}.gravity, density = setting.material.rest_density;
     for (const double froude : spec.froudes) {
-        const std::string name = fmt::format("Fr = {:g}", froude);
-        watch.say(name);
-        Measured m = measure(spec, froude, setting, watch);
-        if (!m.problem.empty()) outcome.notes.push_back(name + ": " + m.problem);
+        Rows rows(watch, outcome, fmt::format("Fr = {:g}", froude));
+        Measured m = rows.noted(measure(spec, froude, setting, watch));
         // A stream that is reflected as a jump of x times its depth: rho h v (v + w) + rho g h^2 / 2 with the jump's
         // own speed w = v / (x - 1), which is the static force of the water behind the jump, rho g (x h)^2 / 2.
         const double jump = momentum_jump(froude) * spec.depth, law = density * gravity * jump * jump / 2;
-        outcome.measurements.push_back({"impulse", name, m.impulse, m.lost});
-        outcome.measurements.push_back({"force", name, m.force, law});
-        outcome.measurements.push_back({"peak_force", name, m.peak, law});
-        m.history.name = name;
+        rows.add("impulse", m.impulse, m.lost);
+        rows.add("force", m.force, law);
+        rows.add("peak_force", m.peak, law);
+        m.history.name = rows.name();
         const double end = m.history.x.empty() ? 0 : m.history.x.back();
         chart.series.push_back(std::move(m.history));
-        chart.series.push_back({name + ", momentum relation", Series::Style::dashed, {0, end}, {law / 1e3, law / 1e3}});
+        chart.series.push_back(
+            {rows.name() + ", momentum relation", Series::Style::dashed, {0, end}, {law / 1e3, law / 1e3}});
     }
     outcome.charts.push_back(std::move(chart));
     return outcome;
