@@ -164,7 +164,7 @@ Result<std::vector<Grid<float>>> intensity_shares(const Stack& stack, const repo
         const GridGeometry& g = record->geometry;
         observe::HazardMaps maps;
         for (const std::size_t map : {depth_map, speed_map, arrival_map}) {
-            Grid<float>& grid = maps.*recorded_maps[map];
+            Grid<float>& grid = maps.*recorded_maps[map].grid;
             grid.geometry = g;
             TALUS_ASSIGN(grid.values, read_map_rows(file, *record, map, 0, g.rows));
         }

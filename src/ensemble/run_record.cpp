@@ -152,8 +152,8 @@ std::vector<double> measure(const scene::Scene& scene, const run::RunResult& res
 Status write_run_record(const std::filesystem::path& file, const std::string& plan, const RunRecord& record,
                         const observe::HazardMaps& maps) {
     std::string text = header_json(plan, record).dump(-1, ' ', false, Json::error_handler_t::replace) + "\n";
-    for (const auto map : recorded_maps) {
-        const std::vector<float>& values = (maps.*map).values;
+    for (const observe::NamedMap& map : recorded_maps) {
+        const std::vector<float>& values = (maps.*map.grid).values;
         if (values.size() != record.geometry.size()) continue;  // a run that failed has none
         const std::size_t at = text.size();
         text.resize(at + values.size() * sizeof(float));

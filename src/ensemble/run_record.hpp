@@ -1,6 +1,5 @@
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <filesystem>
 #include <string>
@@ -8,6 +7,7 @@
 
 #include "core/grid.hpp"
 #include "core/result.hpp"
+#include "observe/map_names.hpp"
 #include "observe/observation.hpp"
 #include "products/checked_file.hpp"
 #include "run/run_result.hpp"
@@ -49,9 +49,7 @@ struct RunRecord {
 };
 
 /// The maps that a record holds, in the order of the file.
-inline constexpr std::array<Grid<float> observe::HazardMaps::*, 5> recorded_maps = {
-    &observe::HazardMaps::peak_depth, &observe::HazardMaps::peak_speed, &observe::HazardMaps::peak_pressure,
-    &observe::HazardMaps::arrival_time, &observe::HazardMaps::deposit_depth};
+inline constexpr auto& recorded_maps = observe::named_maps;
 
 /// Of the complete runs.
 [[nodiscard]] run::RunVerdict judge_together(const std::vector<RunRecord>& runs);

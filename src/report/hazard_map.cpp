@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include "observe/map_names.hpp"
 #include "report/number_text.hpp"
 
 namespace talus::report {
@@ -17,9 +18,21 @@ std::string item(const std::string& upper_limit, const report::Colour& colour, i
                        colour.hex(), alpha, report::escape(label));
 }
 
-HazardMap map(const char* file, const char* title, const char* description, const char* unit, double factor,
-              Grid<float> observe::HazardMaps::*grid, std::vector<double> breaks, const report::Ramp& ramp) {
-    return {file, title, description, unit, factor, grid, std::move(breaks), ramp};
+/// The look of one of observe::named_maps, which has its title, unit and grid.
+HazardMap map(const char* key, const char* description, std::vector<double> breaks, const report::Ramp& ramp,
+              const char* caption, int digits, const char* tab = nullptr) {
+    const observe::NamedMap& named = *observe::find_map(key);
+    HazardMap made{key, named.title, description, named.unit, named.factor, named.grid, std::move(breaks), ramp};
+    made.tab = tab != nullptr ? tab : named.title;
+    made.caption = caption;
+    made.digits = digits;
+    return made;
+}
+
+/// A map that not every run has, in m.
+HazardMap other_map(const char* file, const char* title, const char* description, std::vector<double> breaks,
+                    const report::Ramp& ramp) {
+    return {file, title, description, "m", 1, nullptr, std::move(breaks), ramp};
 }
 
 /// A QGIS 3 layer style around the element of a renderer.
@@ -63,36 +76,38 @@ std::string category_style(const HazardMap& map) {
 }  // namespace
 
 const std::vector<HazardMap>& hazard_maps() {
-    using Maps = observe::HazardMaps;
     // Breaks at 15 and 30 kPa separate slight, extensive and complete damage to buildings not of reinforced concrete
     // (Kang & Kim 2014); depths of 0.5 and 1 m are the limits of common intensity classes.
     static const std::vector<HazardMap> maps = {
-        map("peak_depth", "Peak depth", "peak flow depth, vertical", "m", 1, &Maps::peak_depth,
-            {0, 0.1, 0.25, 0.5, 1, 2, 3, 5, 10, 20}, {205, 0.05, 268, 0.15, 0.90, 0.28}),
-        map("peak_speed", "Peak speed", "peak depth-averaged speed", "m/s", 1, &Maps::peak_speed,
-            {0, 1, 2, 4, 6, 8, 10, 15, 20, 30}, {104, 0.11, 8, 0.13, 0.93, 0.28}),
-        map("peak_pressure", "Peak dynamic pressure", "peak dynamic pressure of the free flow, density x speed^2",
-            "kPa", 1e-3, &Maps::peak_pressure, {0, 5, 15, 30, 50, 100, 200, 400, 800},
-            {88, 0.08, -48, 0.14, 0.93, 0.26}),
-        map("arrival_time", "Arrival time", "time of first arrival since the start of the run", "s", 1,
-            &Maps::arrival_time, {}, {215, 0.06, 118, 0.10, 0.30, 0.92}),
-        map("deposit_depth", "Deposit depth", "deposit depth at the end of the run, vertical", "m", 1,
-            &Maps::deposit_depth, {0.05, 0.1, 0.25, 0.5, 1, 2, 3, 5, 10, 20}, {92, 0.07, 42, 0.09, 0.92, 0.28}),
+        map("peak_depth", "peak flow depth, vertical", {0, 0.1, 0.25, 0.5, 1, 2, 3, 5, 10, 20},
+            {205, 0.05, 268, 0.15, 0.90, 0.28}, "Greatest vertical flow depth at each place during the run.", 2),
+        map("peak_speed", "peak depth-averaged speed", {0, 1, 2, 4, 6, 8, 10, 15, 20, 30},
+            {104, 0.11, 8, 0.13, 0.93, 0.28}, "Greatest depth-averaged speed at each place during the run.", 1),
+        map("peak_pressure", "peak dynamic pressure of the free flow, density x speed^2",
+            {0, 5, 15, 30, 50, 100, 200, 400, 800}, {88, 0.08, -48, 0.14, 0.93, 0.26},
+            "Greatest dynamic pressure of the free flow at each place: density times the square of the depth-averaged "
+            "speed.",
+            0),
+        map("arrival_time", "time of first arrival since the start of the run", {}, {215, 0.06, 118, 0.10, 0.30, 0.92},
+            "Time from the start of the run until debris first stands at each place.", 1),
+        map("deposit_depth", "deposit depth at the end of the run, vertical",
+            {0.05, 0.1, 0.25, 0.5, 1, 2, 3, 5, 10, 20}, {92, 0.07, 42, 0.09, 0.92, 0.28},
+            "Vertical depth of debris at the end of the run. Below 0.05 m nothing is drawn.", 2, "Deposit"),
     };
     return maps;
 }
 
 const HazardMap& erosion_map() {
     static const HazardMap erosion =
-        map("erosion_depth", "Erosion depth", "depth that debris entrained from the bed, vertical", "m", 1, nullptr,
-            {0, 0.05, 0.1, 0.25, 0.5, 1, 2, 3, 5}, {25, 0.07, 52, 0.13, 0.92, 0.30});
+        other_map("erosion_depth", "Erosion depth", "depth that debris entrained from the bed, vertical",
+                  {0, 0.05, 0.1, 0.25, 0.5, 1, 2, 3, 5}, {25, 0.07, 52, 0.13, 0.92, 0.30});
     return erosion;
 }
 
 const HazardMap& thickness_map() {
     static const HazardMap thickness =
-        map("peak_thickness", "Peak thickness", "peak flow thickness, normal to the slope", "m", 1, nullptr,
-            {0, 0.1, 0.25, 0.5, 1, 2, 3, 5, 10, 20}, {205, 0.05, 268, 0.15, 0.90, 0.28});
+        other_map("peak_thickness", "Peak thickness", "peak flow thickness, normal to the slope",
+                  {0, 0.1, 0.25, 0.5, 1, 2, 3, 5, 10, 20}, {205, 0.05, 268, 0.15, 0.90, 0.28});
     return thickness;
 }
 

@@ -28,6 +28,11 @@ struct HazardMap {
     double full_scale = 0;          ///< classes reach at least up to here, so that maps of a kind have the same colours
     std::vector<Colour> colours{};  ///< of the classes of `breaks`, all of them, in place of the ramp
     std::vector<Category> categories{};  ///< of the values 1, 2, ...; then breaks and ramp are not used
+
+    // On the map of a report.
+    std::string tab{};      ///< "Deposit"
+    std::string caption{};  ///< a sentence
+    int digits = 2;         ///< of values
 };
 
 /// All maps, in the order in which they are written.

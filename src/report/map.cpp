@@ -1,7 +1,6 @@
 #include "report/map.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 #include <vector>
@@ -19,24 +18,6 @@
 
 namespace talus::report {
 namespace {
-
-/// Texts of a map in the report, other than its name, unit and colours.
-struct Words {
-    const char* tab;
-    const char* caption;
-    int digits;  ///< of values
-};
-
-/// In the order of hazard_maps().
-constexpr std::array<Words, 5> map_words = {{
-    {"Peak depth", "Greatest vertical flow depth at each place during the run.", 2},
-    {"Peak speed", "Greatest depth-averaged speed at each place during the run.", 1},
-    {"Peak dynamic pressure",
-     "Greatest dynamic pressure of the free flow at each place: density times the square of the depth-averaged speed.",
-     0},
-    {"Arrival time", "Time from the start of the run until debris first stands at each place.", 1},
-    {"Deposit", "Vertical depth of debris at the end of the run. Below 0.05 m nothing is drawn.", 2},
-}};
 
 double largest(const Grid<float>& grid) {
     double most = std::numeric_limits<double>::quiet_NaN();
@@ -190,10 +171,8 @@ MapContent map_content(const scene::Scene& scene, const run::RunResult& result) 
         content.buildings.titles.push_back(building_title(scene.buildings[i], impact));
         content.buildings.removed.push_back(!std::isnan(impact.removed_time));
     }
-    for (std::size_t k = 0; k < hazard_maps().size(); ++k) {
-        const HazardMap& map = hazard_maps()[k];
-        content.layers.push_back(
-            {map, &(observation.maps.*map.grid), map_words.at(k).tab, map_words.at(k).caption, map_words.at(k).digits});
+    for (const HazardMap& map : hazard_maps()) {
+        content.layers.push_back({map, &(observation.maps.*map.grid), map.tab, map.caption, map.digits});
     }
     const IntensityGuideline& guideline = intensity_guideline(scene.spec.outputs.intensity_guideline);
     content.made = std::make_shared<const Grid<float>>(intensity_map(guideline, observation.maps));

@@ -1,7 +1,6 @@
 #include "twin/depth_averaged.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <ctime>
 #include <limits>
@@ -13,6 +12,7 @@
 #include "core/hash.hpp"
 #include "core/number_or_null.hpp"
 #include "core/try.hpp"
+#include "observe/map_names.hpp"
 #include "run/run_scene.hpp"
 #include "run/verdict.hpp"
 #include "run/words.hpp"
@@ -24,7 +24,6 @@ namespace {
 
 using nlohmann::json;
 
-constexpr std::array map_names{"depth", "peak_depth", "peak_speed", "peak_pressure", "arrival_time", "deposit_depth"};
 constexpr double most_moments = 150, shortest_interval = 0.5;  // s
 
 /// Of this thread, s: a run has one.
@@ -99,6 +98,7 @@ json DepthAveragedRun::to_json() const {
 }
 
 Result<Grid<float>> DepthAveragedRun::layer(const std::string& name, std::optional<double> time) const {
+    const auto map_names = observe::map_keys("depth");
     if (std::find(map_names.begin(), map_names.end(), name) == map_names.end()) {
         return Error{fmt::format("layer = {}: must be one of {}", shown(json(name)), fmt::join(map_names, ", "))};
     }
@@ -110,15 +110,13 @@ Result<Grid<float>> DepthAveragedRun::layer(const std::string& name, std::option
         if (after != moments.begin()) --after;
         return known_only(after->depth);
     }
-    if (name == "peak_depth") return maps.peak_depth;
-    if (name == "peak_speed") return maps.peak_speed;
-    if (name == "peak_pressure") return maps.peak_pressure;
-    if (name == "deposit_depth") return maps.deposit_depth;
-    Grid<float> arrival = maps.arrival_time;
-    for (float& value : arrival.values) {
-        if (time && value > *time) value = std::numeric_limits<float>::quiet_NaN();
+    Grid<float> layer = maps.*observe::find_map(name)->grid;
+    if (name == "arrival_time" && time) {
+        for (float& value : layer.values) {
+            if (value > *time) value = std::numeric_limits<float>::quiet_NaN();
+        }
     }
-    return arrival;
+    return layer;
 }
 
 Result<scene::Scene> for_depth_averaged(scene::Scene scene, const DepthAveragedLimits& limits) {

@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "core/number_or_null.hpp"
+#include "observe/map_names.hpp"
 #include "observe/peaks.hpp"
 #include "report/number_text.hpp"
 #include "run/second_opinion.hpp"
@@ -101,14 +102,15 @@ json compared(const scene::Scene& scene, const run::RunResult& particles, const 
     // Maps of peaks are of whole runs.
     const observe::Peaks seen = measure_peaks(particles.observation.maps),
                          at_last = measure_peaks(whole.observation.maps);
-    const auto peak = [&](const char* key, const char* name, const char* unit, int decimals,
-                          observe::Peak observe::Peaks::*member, double scale = 1) {
-        const double value = scale * (at_last.*member).value;
-        rows.add(key, name, unit, decimals, scale * (seen.*member).value, over ? value : observe::never, value);
+    const auto peak = [&](const char* key, observe::Peak observe::Peaks::*member) {
+        const observe::NamedMap& map = *observe::find_map(key);
+        const double value = map.factor * (at_last.*member).value;
+        rows.add(key, map.title, map.unit, map.decimals, map.factor * (seen.*member).value,
+                 over ? value : observe::never, value);
     };
-    peak("peak_depth", "Peak depth", "m", 1, &observe::Peaks::depth);
-    peak("peak_speed", "Peak speed", "m/s", 1, &observe::Peaks::speed);
-    peak("peak_pressure", "Peak dynamic pressure", "kPa", 0, &observe::Peaks::pressure, 1e-3);
+    peak("peak_depth", &observe::Peaks::depth);
+    peak("peak_speed", &observe::Peaks::speed);
+    peak("peak_pressure", &observe::Peaks::pressure);
     return {{"time_s", particles.simulated_time},
             {"over", over},
             {"rows", rows.take()},

@@ -1,5 +1,4 @@
 #include <algorithm>
-#include <array>
 #include <filesystem>
 #include <limits>
 #include <utility>
@@ -8,6 +7,7 @@
 #include <fmt/ranges.h>
 
 #include "observe/erosion.hpp"
+#include "observe/map_names.hpp"
 #include "products/products.hpp"
 #include "report/results.hpp"
 #include "run/run_scene.hpp"
@@ -22,9 +22,6 @@ namespace {
 
 using nlohmann::json;
 
-constexpr std::array layer_names{"depth",        "peak_depth",    "peak_speed",   "peak_pressure",
-                                 "arrival_time", "deposit_depth", "erosion_depth"};
-
 Grid<float> present_layer(const observe::MapAccumulator& maps, const std::string& name) {
     if (name == "depth") {
         Grid<float> depth = maps.present().depth;
@@ -34,11 +31,7 @@ Grid<float> present_layer(const observe::MapAccumulator& maps, const std::string
         return depth;
     }
     observe::HazardMaps peaks = maps.maps();
-    if (name == "peak_depth") return std::move(peaks.peak_depth);
-    if (name == "peak_speed") return std::move(peaks.peak_speed);
-    if (name == "peak_pressure") return std::move(peaks.peak_pressure);
-    if (name == "arrival_time") return std::move(peaks.arrival_time);
-    return std::move(peaks.deposit_depth);
+    return std::move(peaks.*observe::find_map(name)->grid);
 }
 
 Grid<float> erosion_layer(const GridGeometry& terrain, const std::vector<float>& eroded) {
@@ -60,6 +53,7 @@ std::vector<std::string> obstacle_notes(const LiveRun& run) {
 }  // namespace
 
 Result<std::function<Grid<float>()>> Scenario::layer(const std::string& name, std::optional<double> time) const {
+    const auto layer_names = observe::map_keys("depth", "erosion_depth");
     if (std::find(layer_names.begin(), layer_names.end(), name) == layer_names.end()) {
         return Error{fmt::format("layer = {}: must be one of {}", shown(json(name)), fmt::join(layer_names, ", "))};
     }

@@ -1,0 +1,117 @@
+#include "observe/map_names.hpp"
+
+#include <algorithm>
+#include <fstream>
+#include <set>
+#include <sstream>
+#include <string>
+
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+
+#include "params/contours.hpp"
+#include "report/hazard_map.hpp"
+
+/// The table of maps, and the lists of other languages and layers that cannot read it: a map that is added to the
+/// table and not to them is named here.
+namespace talus::observe {
+namespace {
+
+using ::testing::HasSubstr;
+
+std::string source(const char* path) {
+    std::ifstream file(std::string(TALUS_SOURCE_DIR) + "/" + path);
+    std::stringstream text;
+    text << file.rdbuf();
+    EXPECT_FALSE(text.str().empty()) << path;
+    return text.str();
+}
+
+/// Values that other programs get are in SI units.
+std::string si_unit(const NamedMap& map) {
+    if (map.factor == 1) return map.unit;
+    EXPECT_STREQ(map.unit, "kPa");
+    EXPECT_EQ(map.factor, 1e-3);
+    return "Pa";
+}
+
+TEST(MapNames, every_map_has_a_key_of_its_own_and_is_found_by_it) {
+    std::set<std::string_view> keys;
+    for (const NamedMap& map : named_maps) {
+        EXPECT_TRUE(keys.insert(map.key).second) << map.key;
+        EXPECT_EQ(find_map(map.key), &map);
+        EXPECT_NE(map.grid, nullptr) << map.key;
+    }
+    EXPECT_EQ(find_map("depth"), nullptr);
+    EXPECT_EQ(find_map(""), nullptr);
+    EXPECT_EQ(map_keys("depth", "erosion_depth").size(), named_maps.size() + 2);
+    EXPECT_EQ(map_keys("depth").back(), named_maps.back().key);
+}
+
+TEST(MapNames, reports_and_files_have_every_map_in_its_order) {
+    const std::vector<report::HazardMap>& maps = report::hazard_maps();
+    ASSERT_EQ(maps.size(), named_maps.size());
+    for (std::size_t k = 0; k < maps.size(); ++k) {
+        EXPECT_EQ(maps[k].file, named_maps[k].key);
+        EXPECT_EQ(maps[k].grid, named_maps[k].grid);
+        EXPECT_FALSE(maps[k].caption.empty()) << maps[k].file;
+        EXPECT_FALSE(maps[k].tab.empty()) << maps[k].file;
+    }
+}
+
+TEST(MapNames, contours_can_be_asked_for_of_every_map) {
+    for (const NamedMap& map : named_maps) {
+        EXPECT_EQ(std::count(params::contour_maps.begin(), params::contour_maps.end(), map.key), 1) << map.key;
+    }
+}
+
+TEST(MapNames, the_list_of_the_c_interface_has_them) {
+    const std::string header = source("apps/embed/talus.h"), code = source("apps/embed/talus_maps.cpp");
+    for (const NamedMap& map : named_maps) {
+        EXPECT_THAT(header, HasSubstr(fmt::format("\"{}\"", map.key)));
+        EXPECT_THAT(code, HasSubstr(fmt::format("Layer{{\"{}\",", map.key)));
+    }
+}
+
+TEST(MapNames, the_list_of_the_python_module_has_them_with_their_si_units) {
+    const std::string module = source("python/talus/maps.py");
+    for (const NamedMap& map : named_maps) {
+        EXPECT_THAT(module, HasSubstr(fmt::format("    \"{}\": \"{}\",\n", map.key, si_unit(map))));
+    }
+}
+
+TEST(MapNames, the_lists_of_the_qgis_plugin_have_them) {
+    const std::string plugin = source("qgis/talus_processing/algorithms.py");
+    std::string quoted;
+    for (const NamedMap& map : named_maps) quoted += fmt::format("{}\"{}\"", quoted.empty() ? "" : ", ", map.key);
+    EXPECT_THAT(plugin, HasSubstr("MAPS = [" + quoted + ", "));
+    EXPECT_THAT(plugin, HasSubstr("for quantity in (" + quoted + "):")) << "of ensembles";
+}
+
+TEST(MapNames, the_description_of_the_server_has_them) {
+    std::string layers = "'depth'";
+    for (const NamedMap& map : named_maps) layers += fmt::format(" | '{}'", map.key);
+    const std::string protocol = source("src/serve/protocol.json");
+    EXPECT_THAT(protocol, HasSubstr("\"is\": \"" + layers + " | 'erosion_depth'\""));
+    EXPECT_THAT(protocol, HasSubstr("\"is\": \"" + layers + "\"")) << "of the depth-averaged model";
+    const std::string exports = source("src/serve/exports.cpp");
+    for (const NamedMap& map : named_maps) {
+        EXPECT_THAT(exports, HasSubstr(fmt::format("{{\"{}.tif\",", map.key)));
+        EXPECT_THAT(exports, HasSubstr(fmt::format("{{\"{}.qml\",", map.key)));
+    }
+}
+
+TEST(MapNames, the_page_shows_them_with_the_same_titles_units_and_colours) {
+    const std::string layers = source("web/src/scene/layers.ts"), colours = source("web/src/scene/colour.ts");
+    for (const report::HazardMap& map : report::hazard_maps()) {
+        EXPECT_THAT(layers, HasSubstr(fmt::format("  {}: {{ title: \"{}\", unit: \"{}\", ramp: ramps.{},", map.file,
+                                                  map.title, map.unit, map.file)));
+        const report::Ramp& r = map.ramp;
+        EXPECT_THAT(colours,
+                    HasSubstr(fmt::format("  {}: ramp({}, {}, {}, {}, {}, {}),", map.file, r.low_hue, r.low_chroma,
+                                          r.high_hue, r.high_chroma, r.low_lightness, r.high_lightness)));
+    }
+}
+
+}  // namespace
+}  // namespace talus::observe
