@@ -15,19 +15,22 @@ namespace {
 template <class Kernel>
 TALUS_STAGE void find_tolerated(const StageData& data, std::size_t first, std::size_t last) {
     const stages::PairKernel<Kernel> kernel{{}, PairScale(data.model.kernel)};
-    for_each_lanes(data, first, last, [&](const Particles& at) { stages::find_tolerated(at, kernel); });
+    for_each_lanes(data, first, last,
+                   [&](const Particles& at) TALUS_INLINE_LAMBDA { stages::find_tolerated(at, kernel); });
 }
 
 template <class Kernel>
 TALUS_STAGE void update_multipliers(const StageData& data, std::size_t first, std::size_t last) {
     const stages::PairKernel<Kernel> kernel{{}, PairScale(data.model.kernel)};
-    for_each_lanes(data, first, last, [&](const Particles& at) { stages::update_multipliers(at, kernel); });
+    for_each_lanes(data, first, last,
+                   [&](const Particles& at) TALUS_INLINE_LAMBDA { stages::update_multipliers(at, kernel); });
 }
 
 template <class Kernel>
 TALUS_STAGE void apply(const StageData& data, std::size_t first, std::size_t last) {
     const stages::PairKernel<Kernel> kernel{{}, PairScale(data.model.kernel)};
-    for_each_lanes(data, first, last, [&](const Particles& at) { stages::apply_pairs(at, kernel); });
+    for_each_lanes(data, first, last,
+                   [&](const Particles& at) TALUS_INLINE_LAMBDA { stages::apply_pairs(at, kernel); });
 }
 
 PairStages make_stages(params::KernelChoice kernel) {

@@ -18,7 +18,7 @@ namespace {
 
 /// Speed-dependent drag.
 TALUS_STAGE void drag(const StageData& data, std::size_t first, std::size_t last) {
-    for_each_lanes(data, first, last, [&](const Particles& at) {
+    for_each_lanes(data, first, last, [&](const Particles& at) TALUS_INLINE_LAMBDA {
         const Mask moves = at.mobility() > L(0);
         if (!any(moves)) return;
         const V3 slower = stages::slowed_velocity(at, at.load(data.work.column_particles, at.i));
@@ -27,7 +27,7 @@ TALUS_STAGE void drag(const StageData& data, std::size_t first, std::size_t last
 }
 
 TALUS_STAGE void predict(const StageData& data, std::size_t first, std::size_t last) {
-    for_each_lanes(data, first, last, [&](const Particles& at) {
+    for_each_lanes(data, first, last, [&](const Particles& at) TALUS_INLINE_LAMBDA {
         const Mask moves = at.mobility() > L(0);
         V3 velocity = at.velocity();
         velocity.z = select(moves, velocity.z - L(at.step().fall), velocity.z);
@@ -38,7 +38,7 @@ TALUS_STAGE void predict(const StageData& data, std::size_t first, std::size_t l
 
 TALUS_STAGE void begin(const StageData& data, std::size_t first, std::size_t last) {
     Work& work = data.work;
-    for_each_lanes(data, first, last, [&](const Particles& at) {
+    for_each_lanes(data, first, last, [&](const Particles& at) TALUS_INLINE_LAMBDA {
         const L mobile = at.mobility();
         const V3 displacement = select(mobile > L(0), at.velocity() * L(at.step().time_step), V3{});
         at.store(mobile, work.mobile, at.i);
@@ -51,30 +51,31 @@ TALUS_STAGE void begin(const StageData& data, std::size_t first, std::size_t las
 }
 
 TALUS_STAGE void pack_motion(const StageData& data, std::size_t first, std::size_t last) {
-    for_each_lanes(data, first, last, [&](const Particles& at) {
+    for_each_lanes(data, first, last, [&](const Particles& at) TALUS_INLINE_LAMBDA {
         at.store_low(at.with(at.position(), L(0)), data.work.motion, at.i);
         at.store_high(at.with(at.velocity(), L(0)), data.work.motion, at.i);
     });
 }
 
 TALUS_STAGE void resist(const StageData& data, std::size_t first, std::size_t last) {
-    for_each_lanes(data, first, last, [](const Particles& at) { stages::resist(at); });
+    for_each_lanes(data, first, last, [](const Particles& at) TALUS_INLINE_LAMBDA { stages::resist(at); });
 }
 
 TALUS_STAGE void contacts(const StageData& data, std::size_t first, std::size_t last) {
-    for_each_lanes(data, first, last, [](const Particles& at) { stages::contacts(at); });
+    for_each_lanes(data, first, last, [](const Particles& at) TALUS_INLINE_LAMBDA { stages::contacts(at); });
 }
 
 TALUS_STAGE void resolve_penetration(const StageData& data, std::size_t first, std::size_t last) {
-    for_each_lanes(data, first, last, [](const Particles& at) { stages::resolve_penetration(at); });
+    for_each_lanes(data, first, last, [](const Particles& at) TALUS_INLINE_LAMBDA { stages::resolve_penetration(at); });
 }
 
 /// Most particles end their step at their displaced position, without coming near a wall or below ground. The others
 /// are handled one by one.
 TALUS_STAGE void enforce_boundaries(const StageData& data, std::size_t first, std::size_t last) {
     constexpr int max_parts = 4;
-    const auto below_ground = [&](const V3& p) { return p.z < data.ground.terrain.sample(p.x, p.y).height; };
-    for_each_lanes(data, first, last, [&](const Particles& at) {
+    const auto below_ground = [&](const V3& p)
+                                  TALUS_INLINE_LAMBDA { return p.z < data.ground.terrain.sample(p.x, p.y).height; };
+    for_each_lanes(data, first, last, [&](const Particles& at) TALUS_INLINE_LAMBDA {
         const L max_part(at.step().max_shift);
         const V3 start = at.position(), displacement = at.moved();
         const V3 end = start + displacement, shift = at.shift();
@@ -103,7 +104,7 @@ TALUS_STAGE void enforce_boundaries(const StageData& data, std::size_t first, st
 
 TALUS_STAGE float update_velocities(const StageData& data, std::size_t first, std::size_t last) {
     L max_square(0), unknown(0);
-    for_each_lanes(data, first, last, [&](const Particles& at) {
+    for_each_lanes(data, first, last, [&](const Particles& at) TALUS_INLINE_LAMBDA {
         const V3 velocity = select(at.moves(), at.moved() * L(at.step().inverse_time_step), at.velocity());
         const V3 position = at.load(data.work.end, at.i);
         at.set_velocity(velocity);
@@ -125,11 +126,12 @@ TALUS_STAGE float update_velocities(const StageData& data, std::size_t first, st
 template <class Kernel>
 TALUS_STAGE void apply_viscosity(const StageData& data, std::size_t first, std::size_t last) {
     const stages::PairKernel<Kernel> kernel{{}, PairScale(data.model.kernel)};
-    for_each_lanes(data, first, last, [&](const Particles& at) { stages::apply_viscosity(at, kernel); });
+    for_each_lanes(data, first, last,
+                   [&](const Particles& at) TALUS_INLINE_LAMBDA { stages::apply_viscosity(at, kernel); });
 }
 
 TALUS_STAGE void update_sleep(const StageData& data, std::size_t first, std::size_t last) {
-    for_each_lanes(data, first, last, [](const Particles& at) { stages::update_sleep(at); });
+    for_each_lanes(data, first, last, [](const Particles& at) TALUS_INLINE_LAMBDA { stages::update_sleep(at); });
 }
 
 ParticleStages make_stages(params::KernelChoice kernel) {

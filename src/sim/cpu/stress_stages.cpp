@@ -13,33 +13,33 @@ namespace talus::sim::cpu::HWY_NAMESPACE {
 namespace {
 
 TALUS_STAGE void press_asleep(const StageData& data, std::size_t first, std::size_t last) {
-    for_each_lanes(data, first, last, [](const Particles& at) { stages::warm_start(at); });
+    for_each_lanes(data, first, last, [](const Particles& at) TALUS_INLINE_LAMBDA { stages::warm_start(at); });
 }
 
 TALUS_STAGE void clear_asleep(const StageData& data, std::size_t first, std::size_t last) {
-    for_each_lanes(data, first, last, [](const Particles& at) { at.set_stress_change({}); });
+    for_each_lanes(data, first, last, [](const Particles& at) TALUS_INLINE_LAMBDA { at.set_stress_change({}); });
 }
 
 template <class Kernel>
 TALUS_STAGE void linearise(const StageData& data, std::size_t first, std::size_t last) {
     const stages::PairKernel<Kernel> kernel{{}, PairScale(data.model.kernel)};
-    for_each_lanes(data, first, last, [&](const Particles& at) { stages::linearise(at, kernel); });
+    for_each_lanes(data, first, last, [&](const Particles& at) TALUS_INLINE_LAMBDA { stages::linearise(at, kernel); });
 }
 
 TALUS_STAGE void solve(const StageData& data, std::size_t first, std::size_t last) {
-    for_each_lanes(data, first, last, [](const Particles& at) { stages::solve_stress(at); });
+    for_each_lanes(data, first, last, [](const Particles& at) TALUS_INLINE_LAMBDA { stages::solve_stress(at); });
 }
 
 TALUS_STAGE void apply(const StageData& data, std::size_t first, std::size_t last) {
-    for_each_lanes(data, first, last, [](const Particles& at) { stages::apply_stress(at); });
+    for_each_lanes(data, first, last, [](const Particles& at) TALUS_INLINE_LAMBDA { stages::apply_stress(at); });
 }
 
 TALUS_STAGE void find_spread(const StageData& data, std::size_t first, std::size_t last) {
-    for_each_lanes(data, first, last, [](const Particles& at) { stages::find_spread(at); });
+    for_each_lanes(data, first, last, [](const Particles& at) TALUS_INLINE_LAMBDA { stages::find_spread(at); });
 }
 
 TALUS_STAGE void spread(const StageData& data, std::size_t first, std::size_t last) {
-    for_each_lanes(data, first, last, [](const Particles& at) { stages::spread(at); });
+    for_each_lanes(data, first, last, [](const Particles& at) TALUS_INLINE_LAMBDA { stages::spread(at); });
 }
 
 StressStages make_stages(params::KernelChoice kernel) {

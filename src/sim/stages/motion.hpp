@@ -12,7 +12,7 @@ namespace talus::sim::stages {
 /// The velocity after drag by speed, with the thickness of the flow before the step. `in_column`: particles in the
 /// column of the flow.
 template <class At>
-TALUS_DEVICE Vec3<typename At::Real> slowed_velocity(const At& at, const typename At::Real& in_column) {
+TALUS_INLINE Vec3<typename At::Real> slowed_velocity(const At& at, const typename At::Real& in_column) {
     using Real = typename At::Real;
     const Vec3<Real> velocity = at.velocity(), p = at.position();
     const terrain::GroundSample<Real> below = at.ground().terrain.sample(p.x, p.y);
@@ -24,7 +24,7 @@ TALUS_DEVICE Vec3<typename At::Real> slowed_velocity(const At& at, const typenam
 
 /// Resistance, where it varies between particles.
 template <class At>
-TALUS_DEVICE void resist(const At& at) {
+TALUS_INLINE void resist(const At& at) {
     using Real = typename At::Real;
     const Real share = at.share_of_grains();
     const Vec3<Real> p = at.position(), velocity = at.velocity();
@@ -45,7 +45,7 @@ TALUS_DEVICE void resist(const At& at) {
 
 /// Contact with ground and buildings, and the basal part of eq. (4).
 template <class At>
-TALUS_DEVICE void contacts(const At& at) {
+TALUS_INLINE void contacts(const At& at) {
     using Real = typename At::Real;
     const Vec3<Real> displacement = at.corrected();
     const GroundPlane<Real> plane = at.plane();
@@ -67,7 +67,7 @@ TALUS_DEVICE void contacts(const At& at) {
 /// Moves overlapping particles apart without changing their velocity: debris that is too dense (with stresses, its
 /// shift is already computed), and debris too close to ground or walls.
 template <class At>
-TALUS_DEVICE void resolve_penetration(const At& at) {
+TALUS_INLINE void resolve_penetration(const At& at) {
     using Real = typename At::Real;
     const Real max_shift(at.step().max_shift);
     Vec3<Real> shift = at.overlap_shift(at.contact_place(), max_shift);
@@ -79,11 +79,11 @@ TALUS_DEVICE void resolve_penetration(const At& at) {
 
 /// Eq. (5) as XSPH smoothing; the sum weights both particles of a pair equally, so momentum is conserved.
 template <class At, class Smoothing>
-TALUS_DEVICE void apply_viscosity(const At& at, const PairKernel<Smoothing>& kernel) {
+TALUS_INLINE void apply_viscosity(const At& at, const PairKernel<Smoothing>& kernel) {
     using Real = typename At::Real;
     const MotionOf<Real> own = at.motion();
     Vec3<Real> change{};
-    at.for_each_neighbour([&](const auto& neighbour) {
+    at.for_each_neighbour([&](const auto& neighbour) TALUS_INLINE_LAMBDA {
         const MotionOf<Real> other = neighbour.motion();
         const Real weight = kernel.value(kernel.scale.quotient(length(own.position - other.position)));
         change += (other.velocity - own.velocity) * weight;
@@ -101,7 +101,7 @@ TALUS_DEVICE void apply_viscosity(const At& at, const PairKernel<Smoothing>& ker
 /// Debris that has hardly moved for the rest duration sleeps: it keeps its position and pressure until something moves
 /// beside it. Debris against walls stays awake, since the forces on them are measured.
 template <class At>
-TALUS_DEVICE void update_sleep(const At& at) {
+TALUS_INLINE void update_sleep(const At& at) {
     using Real = typename At::Real;
     const Vec3<Real> velocity = at.velocity();
     const Real square = dot(velocity, velocity);

@@ -12,11 +12,11 @@ namespace talus::sim::stages {
 /// Compression present at the step's start may be undone only slowly, since a correction becomes velocity: the density
 /// constraint tolerates the rest.
 template <class At, class Smoothing>
-TALUS_DEVICE void find_tolerated(const At& at, const PairKernel<Smoothing>& kernel) {
+TALUS_INLINE void find_tolerated(const At& at, const PairKernel<Smoothing>& kernel) {
     using Real = typename At::Real;
     const Vec3<Real> p = at.position_at_start();
     PairSums<Real> sums;
-    at.for_each_neighbour([&](const auto& neighbour) {
+    at.for_each_neighbour([&](const auto& neighbour) TALUS_INLINE_LAMBDA {
         const Real q = kernel.scale.quotient(length(p - neighbour.position_at_start()));
         sums.density += neighbour.if_present(kernel.unscaled(q));
     });
@@ -31,11 +31,12 @@ TALUS_DEVICE void find_tolerated(const At& at, const PairKernel<Smoothing>& kern
 
 /// Debris resists compression only.
 template <class At, class Smoothing>
-TALUS_DEVICE void update_multipliers(const At& at, const PairKernel<Smoothing>& kernel) {
+TALUS_INLINE void update_multipliers(const At& at, const PairKernel<Smoothing>& kernel) {
     using Real = typename At::Real;
     const Displaced<Real> own = at.displaced();
     PairSums<Real> sums;
-    at.for_each_neighbour([&](const auto& neighbour) { sums.add(kernel, own.place - neighbour.place(), neighbour); });
+    at.for_each_neighbour([&](const auto& neighbour)
+                              TALUS_INLINE_LAMBDA { sums.add(kernel, own.place - neighbour.place(), neighbour); });
     sums.finish(kernel);
     const BoundaryShare<Real> boundary = at.sample_boundary(own.place, own.moved);
     const Real compression = sums.density + boundary.density - Real(1);
@@ -50,13 +51,13 @@ TALUS_DEVICE void update_multipliers(const At& at, const PairKernel<Smoothing>& 
 
 /// Friction between particles pressed together; equal and opposite for the two of a pair.
 template <class At, class Smoothing>
-TALUS_DEVICE void apply_pairs(const At& at, const PairKernel<Smoothing>& kernel) {
+TALUS_INLINE void apply_pairs(const At& at, const PairKernel<Smoothing>& kernel) {
     using Real = typename At::Real;
     using std::sqrt;
     const Displaced<Real> own = at.displaced();
     const Real cap(at.step().pair_friction_cap);
     Vec3<Real> correction = boundary_correction(at.boundary_gradient(), own.change);
-    at.for_each_neighbour([&](const auto& neighbour) {
+    at.for_each_neighbour([&](const auto& neighbour) TALUS_INLINE_LAMBDA {
         const Displaced<Real> other = neighbour.displaced();
         const Vec3<Real> separation = own.place - other.place;
         const Real square = dot(separation, separation), distance = sqrt(square);

@@ -5,6 +5,14 @@
 #include "core/geometry.hpp"
 #include "sim/step_constants.hpp"
 
+/// For lambdas of the bodies. All of a body is inlined: GCC 12 fails over a function of its own with vectors that the
+/// baseline lacks.
+#if defined(__CUDACC__)
+#define TALUS_INLINE_LAMBDA
+#else
+#define TALUS_INLINE_LAMBDA __attribute__((always_inline))
+#endif
+
 /// The bodies of a step's stages, each written once, for whatever holds the particles. A body is given one of these:
 ///
 /// - `LaneParticles` (sim/cpu/lane_particles.hpp): particles next to each other, a register full of each of their

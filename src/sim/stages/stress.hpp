@@ -18,7 +18,7 @@ TALUS_INLINE StressChange<Real> stress_change(const Real& p, const Deviator<Real
 /// are pressures times dt^2, so they scale with the step. Held debris keeps its values for its start and presses on
 /// nothing.
 template <class At>
-TALUS_DEVICE void warm_start(const At& at) {
+TALUS_INLINE void warm_start(const At& at) {
     using Real = typename At::Real;
     const Real scale(at.step().warm_start_scale);
     const Real multiplier = at.multiplier() * scale;
@@ -31,11 +31,11 @@ TALUS_DEVICE void warm_start(const At& at) {
 
 /// Density constraints and pair gradients at the predicted positions; warm start.
 template <class At, class Smoothing>
-TALUS_DEVICE void linearise(const At& at, const PairKernel<Smoothing>& kernel) {
+TALUS_INLINE void linearise(const At& at, const PairKernel<Smoothing>& kernel) {
     using Real = typename At::Real;
     const Displaced<Real> own = at.displaced();
     PairSums<Real> sums;
-    at.for_each_neighbour([&](const auto& neighbour) {
+    at.for_each_neighbour([&](const auto& neighbour) TALUS_INLINE_LAMBDA {
         const Displaced<Real> other = neighbour.displaced();
         const Vec3<Real> gradient = sums.add(kernel, own.place - other.place, neighbour);
         neighbour.keep_gradient(gradient);
@@ -49,16 +49,15 @@ TALUS_DEVICE void linearise(const At& at, const PairKernel<Smoothing>& kernel) {
 
 /// Eqs. (1) and (2), and the stress that resists the shear of this step.
 template <class At>
-TALUS_DEVICE void solve_stress(const At& at) {
+TALUS_INLINE void solve_stress(const At& at) {
     using Real = typename At::Real;
     const StepConstants& step = at.step();
     const InertialFriction& inertial = at.model().inertial_friction;
     const Real factor(step.jacobi_factor);
     const Vec3<Real> moved = at.moved();
     DisplacementGradient<Real> deformation;
-    at.for_each_gradient([&](const auto& neighbour, const Vec3<Real>& gradient) {
-        deformation.add(neighbour.moved() - moved, gradient);
-    });
+    at.for_each_gradient([&](const auto& neighbour, const Vec3<Real>& gradient)
+                             TALUS_INLINE_LAMBDA { deformation.add(neighbour.moved() - moved, gradient); });
     const DensityConstraint<Real> constraint = at.constraint();
     const Real density = constraint.start - deformation.divergence() + boundary_change(at.boundary_gradient(), moved);
     const Real before = at.multiplier();
@@ -92,11 +91,11 @@ TALUS_DEVICE void solve_stress(const At& at) {
 /// u_i += sum_j [(d lambda_i + d lambda_j) I + ds_i + ds_j] V grad W, equal and opposite for the two particles of a
 /// pair.
 template <class At>
-TALUS_DEVICE void apply_stress(const At& at) {
+TALUS_INLINE void apply_stress(const At& at) {
     using Real = typename At::Real;
     const StressChange<Real> own = at.stress_change();
     Vec3<Real> correction{};
-    at.for_each_gradient([&](const auto& neighbour, const Vec3<Real>& gradient) {
+    at.for_each_gradient([&](const auto& neighbour, const Vec3<Real>& gradient) TALUS_INLINE_LAMBDA {
         const StressChange<Real> other = neighbour.stress_change();
         const Real xy = own.xy + other.xy, xz = own.xz + other.xz, yz = own.yz + other.yz;
         correction += Vec3<Real>{dot(Vec3<Real>{own.xx + other.xx, xy, xz}, gradient),
@@ -109,7 +108,7 @@ TALUS_DEVICE void apply_stress(const At& at) {
 
 /// Density above that at rest, as a multiplier.
 template <class At>
-TALUS_DEVICE void find_spread(const At& at) {
+TALUS_INLINE void find_spread(const At& at) {
     using Real = typename At::Real;
     const Real excess = spread_in_step(at.compression(), Real(at.step().spreading_share));
     at.set_change(next_multiplier(Real(0), excess, at.gradient_square(), Real(at.step().jacobi_factor)));
@@ -117,12 +116,12 @@ TALUS_DEVICE void find_spread(const At& at) {
 
 /// The shift that reduces it.
 template <class At>
-TALUS_DEVICE void spread(const At& at) {
+TALUS_INLINE void spread(const At& at) {
     using Real = typename At::Real;
     const Real own = at.change();
     Vec3<Real> shift = boundary_correction(at.boundary_gradient(), own);
-    at.for_each_gradient(
-        [&](const auto& neighbour, const Vec3<Real>& gradient) { shift += gradient * (own + neighbour.change()); });
+    at.for_each_gradient([&](const auto& neighbour, const Vec3<Real>& gradient)
+                             TALUS_INLINE_LAMBDA { shift += gradient * (own + neighbour.change()); });
     at.set_shift(shift);
 }
 
