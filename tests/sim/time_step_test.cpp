@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-#include "sim/sources/seed.hpp"
+#include "sim/model.hpp"
 #include "sim/step_constants.hpp"
 
 namespace talus::sim {
