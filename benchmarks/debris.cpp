@@ -65,6 +65,7 @@ Step::Step(const Debris& debris, params::InternalFriction method)
     : model_(with_method(debris.model(), method)),
       ground_(debris.ground()),
       state_(debris.state()),
+      constants_(model_, state_),
       work_(state_.count),
       neighbours_(state_.count),
       stages_(model_) {
@@ -92,7 +93,8 @@ void Step::run_until(std::size_t place) {
 }
 
 void Step::run(const Stage& stage) {
-    stage.run({model_, ground_, state_, work_, neighbours_}, 0, (state_.count + sim::block_size - 1) / sim::block_size);
+    stage.run({constants_, model_, ground_, state_, work_, neighbours_}, 0,
+              (state_.count + sim::block_size - 1) / sim::block_size);
 }
 
 void Step::remember() {

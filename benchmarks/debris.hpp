@@ -12,6 +12,7 @@
 #include "sim/cpu/stages.hpp"
 #include "sim/cpu/work.hpp"
 #include "sim/simulation.hpp"
+#include "sim/step_constants.hpp"
 
 namespace talus::benchmarks {
 
@@ -66,6 +67,7 @@ class Step {
     sim::Model model_;
     sim::Ground ground_;
     sim::State state_;
+    sim::StepConstants constants_;
     sim::cpu::Work work_;
     sim::cpu::NeighbourLists neighbours_;
     Stages stages_;

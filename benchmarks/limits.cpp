@@ -60,10 +60,10 @@ TALUS_STAGE float gather_octs(const std::vector<simd::Oct>& rows, const std::vec
 TALUS_STAGE float stream(const std::vector<float>& numbers) {
     L a(0), b(0), c(0), d(0);
     for (std::size_t i = 0; i + 4 * lane_count <= numbers.size(); i += 4 * lane_count) {
-        a += load(numbers, i);
-        b += load(numbers, i + lane_count);
-        c += load(numbers, i + 2 * lane_count);
-        d += load(numbers, i + 3 * lane_count);
+        a += Particles::load(numbers, i);
+        b += Particles::load(numbers, i + lane_count);
+        c += Particles::load(numbers, i + 2 * lane_count);
+        d += Particles::load(numbers, i + 3 * lane_count);
     }
     return total(a + b + (c + d));
 }

@@ -9,7 +9,7 @@
 #include "run/run.hpp"
 #include "scene/limits.hpp"
 #include "scene/particle_spacing.hpp"
-#include "sim/cpu/backend.hpp"
+#include "sim/time_step.hpp"
 
 namespace talus::run {
 namespace {
@@ -106,7 +106,7 @@ Cost cost_of(const scene::Scene& scene, const Rehearsal& rehearsal, double parti
     sim::State state;
     for (const Rehearsal::Step& step : rehearsal.steps) {
         state.max_speed = step.max_speed;
-        sum += step.wall_time * sim::cpu::choose_time_step(few, state) / sim::cpu::choose_time_step(wanted, state);
+        sum += step.wall_time * sim::choose_time_step(few, state) / sim::choose_time_step(wanted, state);
     }
     const double times = std::pow(rehearsal.particle_spacing / particle_spacing, 3);
     sum *= times * relative_cost(rehearsal, times);

@@ -75,4 +75,11 @@ struct Model : ModelValues {
     [[nodiscard]] double largest_time_step() const { return params::largest_time_step(solver, particle_spacing); }
 };
 
+/// All constants of a run, from the scene's material and solver sections.
+[[nodiscard]] Model make_model(const params::MaterialSpec& material, const params::SolverSpec& solver,
+                               double particle_spacing, terrain::GroundCover cover = {});
+
+/// Sets the model's values from the scene's material section. The model must have its kernel.
+void set_material(Model& model, const params::MaterialSpec& material);
+
 }  // namespace talus::sim

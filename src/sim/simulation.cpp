@@ -15,6 +15,7 @@
 #include "sim/fault.hpp"
 #include "sim/particle_density.hpp"
 #include "sim/step.hpp"
+#include "sim/time_step.hpp"
 #include "simd/parallel.hpp"
 
 namespace talus::sim {
@@ -28,7 +29,7 @@ struct Simulation::StepHooks {
         self.inject_inflow(watcher);
         self.hand_over();
     }
-    void choose_time_step() const { self.state_.time_step = cpu::choose_time_step(self.model_, self.state_); }
+    void choose_time_step() const { self.state_.time_step = sim::choose_time_step(self.model_, self.state_); }
     [[nodiscard]] Status check_faults() const {
         return find_fault(self.model_, self.state_, self.highest_energy_head_);
     }

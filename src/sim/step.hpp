@@ -29,6 +29,7 @@ Status step(Backend& backend, const Model& model, const Ground& ground, State& s
     };
     timed(Stage::inject_inflow, [&] { run.inject_inflow(); });
     timed(Stage::choose_time_step, [&] { run.choose_time_step(); });
+    backend.begin_step(model, state);
     timed(Stage::release_held, [&] { backend.release_held(model, state); });
     timed(Stage::apply_drag, [&] { backend.apply_drag(model, ground, state); });
     timed(Stage::predict_positions, [&] { backend.predict_positions(model, ground, state); });

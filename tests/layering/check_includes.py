@@ -36,7 +36,7 @@ BELOW = {
 }
 INCLUDE = re.compile(r'^\s*#\s*include\s*([<"])([^>"]+)[>"]')
 NAMESPACE = re.compile(r"^namespace (talus\b[\w:]*) \{")
-OWN_NAMESPACE = {"sim/cpu", "sim/device", "sim/reference", "observe/device"}  # folders within a module
+OWN_NAMESPACE = {"sim/cpu", "sim/device", "sim/reference", "sim/stages", "observe/device"}  # folders within a module
 GDAL = re.compile(r"^(gdal|ogr|cpl_|proj\b|proj\.h)")
 TESTING = re.compile(r"^(tests|support|gtest|gmock)/")
 BOOST = re.compile(r"^boost/")

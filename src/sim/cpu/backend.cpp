@@ -1,14 +1,14 @@
 #include "sim/cpu/backend.hpp"
 
 #include <algorithm>
-#include <cmath>
+#include <algorithm>
+#include <array>
 
 #include "core/max_or_nan.hpp"
 #include "sim/compression.hpp"
 #include "sim/particle_density.hpp"
 #include "sim/physics/contact.hpp"
 #include "sim/physics/resistance.hpp"
-#include "sim/physics/viscosity.hpp"
 #include "simd/parallel.hpp"
 
 namespace talus::sim::cpu {
@@ -44,7 +44,7 @@ Backend::Backend(const Model& model, std::size_t capacity)
 }
 
 void Backend::run(StageFunction stage, const Model& model, const Ground& ground, State& state, Blocks blocks) {
-    const StageData data{model, ground, state, work_, neighbours_};
+    const StageData data{constants_, model, ground, state, work_, neighbours_};
     simd::parallel_ranges(blocks.last - blocks.first, block_grain, [&](std::size_t first, std::size_t last) {
         stage(data, blocks.first + first, blocks.first + last);
     });
@@ -52,6 +52,10 @@ void Backend::run(StageFunction stage, const Model& model, const Ground& ground,
 
 void Backend::run(StageFunction stage, const Model& model, const Ground& ground, State& state) {
     run(stage, model, ground, state, awake(state));
+}
+
+void Backend::begin_step(const Model& model, const State& state) {
+    constants_ = StepConstants(model, state);
 }
 
 void Backend::release_held(const Model& model, State& state) {
@@ -100,8 +104,9 @@ void Backend::prepare_particles(const Model& model, const Ground& ground, State&
     run(particle_stages_.begin, model, ground, state, everything(state));
     // For awake particles, only pair friction needs the positions at the step's start; otherwise those at its end are
     // packed.
-    run(particle_stages_.pack_motion, model, ground, state, keeps_stress(model) ? asleep(state) : everything(state));
-    if (resists_by_particle(model)) run(particle_stages_.resist, model, ground, state);
+    run(particle_stages_.pack_motion, model, ground, state,
+        constants_.keeps_stress ? asleep(state) : everything(state));
+    if (constants_.resists_by_particle) run(particle_stages_.resist, model, ground, state);
 }
 
 void Backend::reorder(State& state, std::span<const std::uint32_t> order) {
@@ -114,12 +119,8 @@ void Backend::reorder(State& state, std::span<const std::uint32_t> order) {
     for_each_array(state, reordered_, [](auto& a, auto& b) { a.swap(b); });
 }
 
-bool Backend::keeps_stress(const Model& model) {
-    return model.solver.internal_friction == params::InternalFriction::stress;
-}
-
 void Backend::warm_start(const Model& model, const Ground& ground, State& state) {
-    if (keeps_stress(model)) {
+    if (constants_.keeps_stress) {
         run(stress_stages_.linearise, model, ground, state);
         run(stress_stages_.press_asleep, model, ground, state, asleep(state));
         run(stress_stages_.apply, model, ground, state);
@@ -131,7 +132,7 @@ void Backend::warm_start(const Model& model, const Ground& ground, State& state)
 }
 
 void Backend::solve_density(const Model& model, const Ground& ground, State& state) {
-    if (keeps_stress(model)) {
+    if (constants_.keeps_stress) {
         run(stress_stages_.solve, model, ground, state);
         run(stress_stages_.apply, model, ground, state);
     } else {
@@ -145,7 +146,7 @@ void Backend::solve_contacts(const Model& model, const Ground& ground, State& st
 }
 
 void Backend::resolve_penetration(const Model& model, const Ground& ground, State& state) {
-    if (keeps_stress(model)) {
+    if (constants_.keeps_stress) {
         run(stress_stages_.find_spread, model, ground, state);
         run(stress_stages_.spread, model, ground, state);
     }
@@ -168,7 +169,7 @@ void Backend::measure_compression(const Model&, State& state) const {
 }
 
 void Backend::update_velocities(const Model& model, const Ground& ground, State& state) {
-    const StageData data{model, ground, state, work_, neighbours_};
+    const StageData data{constants_, model, ground, state, work_, neighbours_};
     state.max_speed = simd::reduce_ranges(
         awake(state).last, block_grain, 0.0f,
         [&](std::size_t first, std::size_t last, float max) {
@@ -225,26 +226,6 @@ void Backend::remove_outflow(const Model&, const Ground& ground, State& state) {
                                      [&](std::uint32_t i, std::uint32_t k) { moved_to[i] = k; });
     std::erase_if(state.building_contacts, [&](const BuildingContact& c) { return gone_[c.particle] != 0; });
     for (BuildingContact& contact : state.building_contacts) contact.particle = moved_to[contact.particle];
-}
-
-double choose_time_step(const Model& model, const State& state) {
-    if (model.solver.time_step) return *model.solver.time_step;
-    const double reach = model.solver.displacement_limit * model.particle_spacing;
-    double dt = std::min(model.largest_time_step(), longest_viscous_step(model.viscosity));
-    // Pressure spreads by a few layers per step. Debris that becomes denser is too deep for that; if nothing is done,
-    // particles end up at the same place, where no gradient separates them.
-    constexpr double too_compressed = 0.01, recovered = 0.005;
-    if (state.time_step > 0 && state.mean_compression > recovered) {
-        const double eased = state.mean_compression > too_compressed ? state.time_step / 2 : state.time_step;
-        dt = std::clamp(eased, std::max(dt / 8, std::min(dt, model.solver.smallest_time_step)), dt);
-    }
-    // In steps of an eighth of an octave: coarser increments would halve the step for debris that is only just too
-    // fast; finer ones would change the step, and the multipliers with it, at every change of speed.
-    const double shorter = std::exp2(-0.125);
-    const auto too_long = [&] { return dt * (state.max_speed + model.gravity * dt) > reach; };
-    while (dt > model.solver.smallest_time_step && too_long())
-        dt = std::max(shorter * dt, model.solver.smallest_time_step);
-    return dt;
 }
 
 }  // namespace talus::sim::cpu

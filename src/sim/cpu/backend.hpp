@@ -13,6 +13,7 @@
 #include "sim/ground.hpp"
 #include "sim/model.hpp"
 #include "sim/state.hpp"
+#include "sim/step_constants.hpp"
 
 namespace talus::sim::cpu {
 
@@ -34,6 +35,8 @@ class Backend {
   public:
     Backend(const Model& model, std::size_t capacity);
 
+    /// Before the stages of a step, when its length is known.
+    void begin_step(const Model& model, const State& state);
     void release_held(const Model& model, State& state);
     void apply_drag(const Model& model, const Ground& ground, State& state);
     void predict_positions(const Model& model, const Ground& ground, State& state);
@@ -58,12 +61,12 @@ class Backend {
     [[nodiscard]] std::string_view instruction_set() const { return particle_stages_.instruction_set; }
 
   private:
-    static bool keeps_stress(const Model& model);
     void run(StageFunction stage, const Model& model, const Ground& ground, State& state, Blocks blocks);
     void run(StageFunction stage, const Model& model, const Ground& ground, State& state);  ///< on all awake particles
     void count_columns(const Model& model, const Ground& ground, const State& state);
     void reorder(State& state, std::span<const std::uint32_t> order);
 
+    StepConstants constants_;
     ParticleStages particle_stages_;
     StressStages stress_stages_;
     PairStages pair_stages_;
@@ -78,9 +81,5 @@ class Backend {
     std::vector<std::uint8_t> gone_;
     std::vector<std::uint32_t> new_index_;  // of the particles that stay
 };
-
-/// The next time step: `time_step` of the scene, or the largest dt_max / 2^(k/8) in which the fastest particle, falling
-/// freely, moves at most `displacement_limit` of a spacing; shorter while the debris is compressed, down to an eighth.
-[[nodiscard]] double choose_time_step(const Model& model, const State& state);
 
 }  // namespace talus::sim::cpu

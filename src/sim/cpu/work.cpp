@@ -1,5 +1,7 @@
 #include "sim/cpu/work.hpp"
 
+#include <array>
+
 namespace talus::sim::cpu {
 
 Work::Work(std::size_t capacity) {
@@ -27,18 +29,10 @@ float sample_walls(const Model& model, const Ground& ground, const State& state,
     return boundary.density;
 }
 
-Vec3<float> resolve_wall_contacts(const Model& model, Work& work, std::size_t i, float multiplier,
-                                  Vec3<float> displacement) {
-    WallContacts& walls = work.walls[i];
-    const float effective = resists_by_particle(model) ? work.effective_share[i] : 1;
-    const float friction = static_cast<float>(model.building_friction_coefficient) * effective;
-    for (std::size_t f = 0; f < walls.faces.size(); ++f) {
-        const BoundaryFace<float>& wall = walls.faces[f];
-        if (wall.building < 0) break;
-        displacement += resolve_face(model, wall.distance + dot(displacement, wall.normal), wall.normal, displacement,
-                                     boundary_push(wall.slope, multiplier), friction, 0.0f, walls.contacts[f]);
-    }
-    return displacement;
+Vec3<float> resolve_wall_contacts(const Model& model, const StepConstants& step, Work& work, std::size_t i,
+                                  float multiplier, const Vec3<float>& displacement) {
+    const float share_of_grains = step.resists_by_particle ? work.effective_share[i] : 1;
+    return resolve_walls(model, work.walls[i], multiplier, share_of_grains, displacement);
 }
 
 Vec3<float> undo_overlap_near_walls(const Model& model, const Ground& ground, const State& state, std::size_t i,

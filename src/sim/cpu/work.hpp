@@ -1,6 +1,5 @@
 #pragma once
 
-#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <vector>
@@ -10,6 +9,7 @@
 #include "sim/model.hpp"
 #include "sim/physics/contact.hpp"
 #include "sim/state.hpp"
+#include "sim/step_constants.hpp"
 #include "simd/lanes.hpp"
 
 namespace talus::sim::cpu {
@@ -56,12 +56,6 @@ struct MotionRow : simd::Oct {};     ///< as in State: position x, y, z, 0; velo
     X(std::vector<WallContacts>, walls)
 // clang-format on
 
-/// Walls, distances as ground_distance, and the contacts with them in this step.
-struct WallContacts {
-    std::array<BoundaryFace<float>, face_count - 1> faces;
-    std::array<ContactMemory<float>, face_count - 1> contacts;
-};
-
 struct Work {
     explicit Work(std::size_t capacity);
 
@@ -72,6 +66,7 @@ struct Work {
 
 /// What a stage works on.
 struct StageData {
+    const StepConstants& step;
     const Model& model;
     const Ground& ground;
     State& state;
@@ -86,8 +81,8 @@ struct StageData {
 float sample_walls(const Model& model, const Ground& ground, const State& state, Work& work, std::size_t i,
                    const Vec3<float>& p, const Vec3<float>& displacement);
 /// Resolves the contacts with the walls; returns the new displacement.
-Vec3<float> resolve_wall_contacts(const Model& model, Work& work, std::size_t i, float multiplier,
-                                  Vec3<float> displacement);
+Vec3<float> resolve_wall_contacts(const Model& model, const StepConstants& step, Work& work, std::size_t i,
+                                  float multiplier, const Vec3<float>& displacement);
 /// undo_overlap() of particle `i`.
 Vec3<float> undo_overlap_near_walls(const Model& model, const Ground& ground, const State& state, std::size_t i,
                                     const Vec3<float>& p, float max_shift);

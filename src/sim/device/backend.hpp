@@ -47,6 +47,7 @@ class Backend {
     /// Over all particles.
     [[nodiscard]] virtual Motion count_motion(const StateSummary& state, const MotionCount& count) const = 0;
 
+    virtual void begin_step(const Model& model, const State& state) = 0;
     virtual void release_held(const Model& model, State& state) = 0;
     virtual void apply_drag(const Model& model, const Ground& ground, State& state) = 0;
     virtual void predict_positions(const Model& model, const Ground& ground, State& state) = 0;

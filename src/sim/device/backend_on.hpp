@@ -11,6 +11,7 @@
 #include "sim/device/reductions.hpp"
 #include "sim/device/resident.hpp"
 #include "sim/device/search_kernels.hpp"
+#include "sim/device/smoothing.hpp"
 #include "sim/device/stress_kernels.hpp"
 
 namespace talus::sim::device {
@@ -25,20 +26,23 @@ class BackendOn final : public Resident<Executor> {
     using Memory = Array<T, Executor>;
 
   public:
-    void release_held(const Model&, State& state) override {
-        executor_.for_each(state.count, ReleaseHeld{data_, state.time});
+    void begin_step(const Model& model, const State& state) override {
+        data_.step = StepConstants(model, state);
+        data_.time = state.time;
     }
+
+    void release_held(const Model&, State& state) override { executor_.for_each(state.count, ReleaseHeld{data_}); }
 
     void apply_drag(const Model& model, const Ground&, State& state) override {
         if (!slows_by_speed(model) || state.count == 0) return;
         const ColumnBox box = column_box(model, bounds(state, 0));
         executor_.for_each(static_cast<std::size_t>(box.columns * box.rows), ClearColumns{box});
         executor_.for_each(state.count, CountColumns{data_, box});
-        executor_.for_each(state.count, Drag{data_, box, static_cast<float>(state.time_step)});
+        executor_.for_each(state.count, Drag{data_, box});
     }
 
-    void predict_positions(const Model& model, const Ground&, State& state) override {
-        executor_.for_each(state.count, ApplyGravity{data_, static_cast<float>(model.gravity * state.time_step)});
+    void predict_positions(const Model&, const Ground&, State& state) override {
+        executor_.for_each(state.count, ApplyGravity{data_});
     }
 
     void sort_particles(const Model& model, State& state) override {
@@ -54,8 +58,9 @@ class BackendOn final : public Resident<Executor> {
     void find_neighbours(const Model& model, State& state) override {
         state.awake = executor_.template reduce<std::uint32_t>(state.count, 0, IsAwake{data_.state.asleep}, Add{});
         if (state.count == 0) return;
-        executor_.for_each(state.count,
-                           Begin{data_, static_cast<float>(state.time_step), !data_.ground.solids.empty()});
+        data_.count = state.count;
+        data_.awake = state.awake;
+        executor_.for_each(state.count, Begin{data_});
         const Cells cells = list_cells(state);
         const auto radius = static_cast<float>(model.support_radius);
         executor_.for_each(state.awake, CountNeighbours{data_, cells, radius * radius});
@@ -68,52 +73,39 @@ class BackendOn final : public Resident<Executor> {
         searched_ = state.awake;
     }
 
-    void prepare_particles(const Model& model, const Ground&, State& state) override {
-        if (!needs_.resistance) return;
-        const double before = state.previous_time_step;  // multipliers are still those of the last step
-        executor_.for_each(state.awake, Resist{data_, static_cast<float>(strength_per_pascal(model, state.time_step)),
-                                               static_cast<float>(before > 0 ? -1 / (before * before) : 0),
-                                               static_cast<float>(state.time_step), state.time});
+    void prepare_particles(const Model&, const Ground&, State& state) override {
+        if (needs_.resistance) executor_.for_each(state.awake, Resist{data_});
     }
 
     void warm_start(const Model& model, const Ground&, State& state) override {
-        with_pairs(model, [&]<class Smoothing>(const PairKernel<Smoothing>& pair) {
+        with_kernel_of_pairs(model, [&]<class Smoothing>(const stages::PairKernel<Smoothing>& kernel) {
             if (needs_.stress) {
-                const double ratio = state.previous_time_step > 0 ? state.time_step / state.previous_time_step : 0;
-                const auto scale = static_cast<float>(ratio * ratio);
                 const std::uint32_t asleep = state.count - state.awake;
-                executor_.for_each(state.awake, Linearise<Smoothing>{data_, pair, softness(model), scale});
-                executor_.for_each(asleep, PressAsleep{data_, scale, state.awake});
-                executor_.for_each(state.awake, ApplyStress<Smoothing>{data_, pair});
-                executor_.for_each(asleep, ClearAsleep{data_, state.awake});
+                executor_.for_each(state.awake, Linearise<Smoothing>{data_, kernel});
+                executor_.for_each(asleep, PressAsleep{data_});
+                executor_.for_each(state.awake, ApplyStress<Smoothing>{data_, kernel});
+                executor_.for_each(asleep, ClearAsleep{data_});
             } else {
-                const double undone = model.solver.depenetration_speed * state.time_step / model.particle_spacing;
-                executor_.for_each(state.awake, FindTolerated<Smoothing>{data_, pair, static_cast<float>(undone)});
+                executor_.for_each(state.awake, FindTolerated<Smoothing>{data_, kernel});
             }
         });
         state.previous_time_step = state.time_step;
     }
 
     void solve_density(const Model& model, const Ground&, State& state) override {
-        const auto factor = static_cast<float>(jacobi_factor(model.solver.under_relaxation, model.kernel));
-        with_pairs(model, [&]<class Smoothing>(const PairKernel<Smoothing>& pair) {
+        with_kernel_of_pairs(model, [&]<class Smoothing>(const stages::PairKernel<Smoothing>& kernel) {
             if (needs_.stress) {
-                const auto cohesion = static_cast<float>(internal_strength(model, state.time_step));
-                const auto grain_size =
-                    static_cast<float>(model.inertial_friction.grain_size / model.kernel.gradient_moment);
-                executor_.for_each(
-                    state.awake, SolveStress<Smoothing>{data_, pair, factor, cohesion, grain_size, needs_.resistance});
-                executor_.for_each(state.awake, ApplyStress<Smoothing>{data_, pair});
+                executor_.for_each(state.awake, SolveStress<Smoothing>{data_, kernel});
+                executor_.for_each(state.awake, ApplyStress<Smoothing>{data_, kernel});
             } else {
-                const auto cap = static_cast<float>(pair_friction_cap(model.internal_friction_coefficient));
-                executor_.for_each(state.awake, UpdateMultipliers<Smoothing>{data_, pair, softness(model), factor});
-                executor_.for_each(state.awake, ApplyPairs<Smoothing>{data_, pair, cap});
+                executor_.for_each(state.awake, UpdateMultipliers<Smoothing>{data_, kernel});
+                executor_.for_each(state.awake, ApplyPairs<Smoothing>{data_, kernel});
             }
         });
     }
 
     void solve_contacts(const Model&, const Ground&, State& state) override {
-        executor_.for_each(state.awake, Contacts{data_, needs_.resistance, !needs_.stress});
+        executor_.for_each(state.awake, Contacts{data_});
     }
 
     void measure_compression(const Model&, State& state) override {
@@ -123,18 +115,16 @@ class BackendOn final : public Resident<Executor> {
 
     void resolve_penetration(const Model& model, const Ground&, State& state) override {
         if (needs_.stress) {
-            const auto factor = static_cast<float>(jacobi_factor(model.solver.under_relaxation, model.kernel));
-            const auto share = static_cast<float>(spreading_share(state.time_step));
-            executor_.for_each(state.awake, FindSpread{data_, factor, share});
-            with_pairs(model, [&]<class Smoothing>(const PairKernel<Smoothing>& pair) {
-                executor_.for_each(state.awake, Spread<Smoothing>{data_, pair});
+            executor_.for_each(state.awake, FindSpread{data_});
+            with_kernel_of_pairs(model, [&]<class Smoothing>(const stages::PairKernel<Smoothing>& kernel) {
+                executor_.for_each(state.awake, Spread<Smoothing>{data_, kernel});
             });
         }
-        executor_.for_each(state.awake, UndoOverlaps{data_, needs_.stress});
+        executor_.for_each(state.awake, ResolvePenetration{data_});
     }
 
     void enforce_boundaries(const Model&, const Ground&, State& state) override {
-        executor_.for_each(state.awake, Finish{data_, static_cast<float>(1 / state.time_step)});
+        executor_.for_each(state.awake, Finish{data_});
     }
 
     void update_velocities(const Model&, const Ground&, State& state) override {
@@ -156,24 +146,17 @@ class BackendOn final : public Resident<Executor> {
 
     void apply_viscosity(const Model& model, const Ground&, State& state) override {
         if (!(model.viscosity > 0)) return;
-        const auto smoothing = static_cast<float>(step_smoothing(model.viscosity, state.time_step));
-        with_pairs(model, [&]<class Smoothing>(const PairKernel<Smoothing>& pair) {
-            executor_.for_each(state.awake, ApplyViscosity<Smoothing>{data_, pair, smoothing});
+        with_kernel_of_pairs(model, [&]<class Smoothing>(const stages::PairKernel<Smoothing>& kernel) {
+            executor_.for_each(state.awake, ApplyViscosity<Smoothing>{data_, kernel});
         });
     }
 
     void update_sleep(const Model& model, const Ground&, State& state) override {
-        if (!(model.solver.rest_duration > 0)) return;
-        // A hundredth of the speed of a fall through its own size; waking takes twice that.
-        const double sleep = 0.01 * std::sqrt(model.gravity * model.particle_spacing), wake = 2 * sleep;
-        executor_.for_each(
-            state.awake, UpdateSleep{data_, static_cast<float>(state.time_step),
-                                     static_cast<float>(model.solver.rest_duration), static_cast<float>(sleep * sleep),
-                                     static_cast<float>(wake * wake), state.awake, state.awake < state.count});
+        if (model.solver.rest_duration > 0) executor_.for_each(state.awake, UpdateSleep{data_});
     }
 
     void remove_outflow(const Model&, const Ground&, State& state) override {
-        executor_.for_each(state.count, MarkInside{data_, state.awake});
+        executor_.for_each(state.count, MarkInside{data_});
         const std::uint32_t kept = executor_.sum_up(data_.work.index, state.count);
         if (kept == state.count) return;
         if (!state.building_contacts.empty()) renumber(state.building_contacts);
@@ -191,18 +174,14 @@ class BackendOn final : public Resident<Executor> {
     }
 
   private:
-    static float softness(const Model& model) {
-        return static_cast<float>(model.solver.constraint_relaxation * model.kernel.rest_gradient_sum);
-    }
-
     /// Calls f with the kernel of pairs.
     template <class F>
-    static void with_pairs(const Model& model, const F& f) {
+    static void with_kernel_of_pairs(const Model& model, const F& f) {
         const PairScale scale(model.kernel);
         if (model.kernel.choice == params::KernelChoice::wendland_c2) {
-            f(PairKernel<kernels::WendlandC2>{{}, scale});
+            f(stages::PairKernel<kernels::WendlandC2>{{}, scale});
         } else {
-            f(PairKernel<ChosenSmoothing>{{model.kernel.choice}, scale});
+            f(stages::PairKernel<ChosenSmoothing>{{model.kernel.choice}, scale});
         }
     }
 

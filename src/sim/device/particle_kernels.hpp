@@ -5,25 +5,25 @@
 #include <cstdint>
 
 #include "sim/device/atomics.hpp"
-#include "sim/device/smoothing.hpp"
+#include "sim/device/one_particle.hpp"
 #include "sim/device/views.hpp"
 #include "sim/particle_density.hpp"
 #include "sim/physics/columns.hpp"
 #include "sim/physics/contact.hpp"
 #include "sim/physics/net.hpp"
 #include "sim/physics/resistance.hpp"
-#include "sim/physics/viscosity.hpp"
+#include "sim/stages/motion.hpp"
 
 /// The stages that treat each particle by itself, and viscosity: one functor per kernel, called with the particle.
+/// Bodies that the processor's lanes have too are in sim/stages.
 namespace talus::sim::device {
 
 /// Starts the releases whose time has come.
 struct ReleaseHeld {
     Data d;
-    double time{};
 
     TALUS_DEVICE void operator()(std::uint32_t i) const {
-        if (d.state.held[i] != 0 && time >= start_time_of(d.model, d.state.id[i])) d.state.held[i] = 0;
+        if (d.state.held[i] != 0 && d.time >= start_time_of(d.model, d.state.id[i])) d.state.held[i] = 0;
     }
 };
 
@@ -59,175 +59,78 @@ struct CountColumns {
     }
 };
 
-/// Drag by speed, with the thickness of the flow before the step.
+/// Drag by speed.
 struct Drag {
     Data d;
     ColumnBox box{};
-    float time_step{};
 
     TALUS_DEVICE void operator()(std::uint32_t i) const {
         if (!d.state.moves(i)) return;
+        const OneParticle at{d, i};
         const LocalPoint p = d.state.position[i];
         float counted = 0;
         for_each_column(p.x, p.y, box.inverse_width, [&](std::int64_t column, std::int64_t row, float share) {
-            const std::uint32_t* const at = box.at(column, row);
-            if (at != nullptr) counted += share * static_cast<float>(*at) * (1 / units_per_particle);
+            const std::uint32_t* const units = box.at(column, row);
+            if (units != nullptr) counted += share * static_cast<float>(*units) * (1 / units_per_particle);
         });
-        const float particles = counted / open_share(d.model, d.ground, p, grain_rank(d.state.id[i]));
-        const terrain::GroundSample<float> below = d.ground.terrain.sample(p.x, p.y);
-        const float distance = (p.z - below.height) * below.normal.z;
-        const float thickness = flow_thickness(d.model, below, particles);
-        d.state.velocity[i] = slowed_by_drag(d.model, ground_resistance(d.model, p), below, distance, thickness,
-                                             d.state.velocity[i], time_step);
+        at.set_velocity(stages::slowed_velocity(at, counted / open_share(d.model, d.ground, p, at.rank())));
     }
 };
 
 struct ApplyGravity {
     Data d;
-    float fall{};  ///< m/s
 
     TALUS_DEVICE void operator()(std::uint32_t i) const {
-        if (d.state.moves(i)) d.state.velocity[i].z -= fall;
+        if (d.state.moves(i)) d.state.velocity[i].z -= d.step.fall;
     }
 };
 
 /// Initialises what the step knows of all particles in their new order, sleeping ones included.
 struct Begin {
     Data d;
-    float time_step{};
-    bool walls{};
 
     TALUS_DEVICE void operator()(std::uint32_t i) const {
         const LocalPoint p = d.state.position[i];
-        const Vec3<float> displacement = d.state.moves(i) ? d.state.velocity[i] * time_step : Vec3<float>{};
+        const Vec3<float> displacement = d.state.moves(i) ? d.state.velocity[i] * d.step.time_step : Vec3<float>{};
         d.work.place[i] = row_of(p + displacement);
         d.work.moved[i] = row_of(displacement);
         d.work.corrected[i] = displacement;
         d.work.velocity_before[i] = d.state.velocity[i];
         d.work.contact[i] = {};
-        if (walls) d.work.walls[i] = {};
+        if (!d.ground.solids.empty()) d.work.walls[i] = {};
     }
 };
 
 /// Resistance of every particle, where it varies between them.
 struct Resist {
     Data d;
-    float strength{}, pressure_scale{}, time_step{};
-    double time{};
 
-    TALUS_DEVICE void operator()(std::uint32_t i) const {
-        const auto share = static_cast<float>(effective_share(d.model, d.state.entry_of_id, d.state.id[i], time));
-        const LocalPoint p = d.state.position[i], velocity = d.state.velocity[i];
-        const GroundResistance<float> ground = ground_resistance(d.model, p);
-        Resistance result;
-        result.friction = moving_friction(d.model, d.ground.terrain, ground.friction_coefficient, p, velocity,
-                                          d.state.multiplier[i] * pressure_scale, share, time_step);
-        if (d.model.inertial_friction.on) {
-            result.ground_shear = shear_beside_ground(d.model, ground.friction_coefficient);
-        }
-        result.effective_share = share;
-        result.friction *= share;
-        result.strength = ground.cohesion * strength;
-        d.work.resistance[i] = result;
-    }
+    TALUS_DEVICE void operator()(std::uint32_t i) const { stages::resist(OneParticle{d, i}); }
 };
 
-/// The share of ground and walls in a particle's density.
-struct BoundaryShare {
-    float density{};
-    Vec3<float> gradient;
-};
-
-/// Samples ground and walls of particle `i` at `p`, displaced by `displacement` from where the step started; keeps them
-/// in the work arrays.
-TALUS_DEVICE inline BoundaryShare sample_boundary_of(const Data& d, std::uint32_t i, const Vec3<float>& p,
-                                                     const Vec3<float>& displacement) {
-    const auto keep = [&](float distance, float slope, const Vec3<float>& normal, const Vec3<float>& gradient) {
-        d.work.plane[i] = {distance - dot(displacement, normal), slope, normal};
-        d.work.boundary_gradient[i] = gradient;
-    };
-    if (d.ground.solids.empty() || !d.ground.solids.near(p.x, p.y)) {
-        const GroundFace<float> base = sample_ground(d.model, d.ground.terrain, p);
-        keep(base.distance, base.slope, base.normal, base.normal * base.slope);
-        if (!d.ground.solids.empty()) {
-            for (BoundaryFace<float>& face : d.work.walls[i].faces) face.building = -1;
-        }
-        return {base.density, base.normal * base.slope};
-    }
-    const Boundary<float> boundary = sample_boundary(d.model, d.ground, p, grain_rank(d.state.id[i]));
-    const BoundaryFace<float>& base = boundary.faces[0];
-    keep(base.distance, base.slope, base.normal, boundary.gradient);
-    Walls& walls = d.work.walls[i];
-    for (std::size_t f = 0; f < walls.faces.size(); ++f) {
-        walls.faces[f] = boundary.faces[f + 1];
-        walls.faces[f].distance -= dot(displacement, walls.faces[f].normal);
-    }
-    return {boundary.density, boundary.gradient};
-}
-
-/// Contact with ground and buildings, and the basal part of eq. (4).
 struct Contacts {
     Data d;
-    bool by_particle{}, place_follows{};
 
     TALUS_DEVICE void operator()(std::uint32_t i) const {
-        if (!d.state.moves(i)) return;
-        const float multiplier = d.state.multiplier[i];
-        Vec3<float> after = d.work.corrected[i];
-        const GroundPlane plane = d.work.plane[i];
-        const float distance = plane.distance + dot(after, plane.normal);
-        auto friction = static_cast<float>(d.model.friction_coefficient);
-        float strength = 0, effective = 1;
-        if (by_particle) {
-            const Resistance resistance = d.work.resistance[i];
-            friction = resistance.friction;
-            strength = resistance.strength * basal_share(d.model, distance);
-            effective = resistance.effective_share;
-        }
-        after += resolve_face(d.model, distance, plane.normal, after, boundary_push(plane.slope, multiplier), friction,
-                              strength, d.work.contact[i]);
-        if (!d.ground.solids.empty()) after = resolve_walls(i, multiplier, effective, after);
-        d.work.moved[i] = row_of(after);
-        if (place_follows) d.work.place[i] = row_of(d.state.position[i] + after);
-    }
-
-    TALUS_DEVICE Vec3<float> resolve_walls(std::uint32_t i, float multiplier, float effective,
-                                           Vec3<float> moved) const {
-        Walls& walls = d.work.walls[i];
-        const float friction = static_cast<float>(d.model.building_friction_coefficient) * effective;
-        for (std::size_t f = 0; f < walls.faces.size() && walls.faces[f].building >= 0; ++f) {
-            const BoundaryFace<float>& wall = walls.faces[f];
-            moved += resolve_face(d.model, wall.distance + dot(moved, wall.normal), wall.normal, moved,
-                                  boundary_push(wall.slope, multiplier), friction, 0.0f, walls.contacts[f]);
-        }
-        return moved;
+        if (d.state.moves(i)) stages::contacts(OneParticle{d, i});
     }
 };
 
-/// Moves overlapping particles apart without changing their velocity. `spread`: the shift out of debris that is too
-/// dense is already computed.
-struct UndoOverlaps {
+struct ResolvePenetration {
     Data d;
-    bool spread{};
 
     TALUS_DEVICE void operator()(std::uint32_t i) const {
-        if (!d.state.moves(i)) {
+        if (d.state.moves(i)) {
+            stages::resolve_penetration(OneParticle{d, i});
+        } else {
             d.work.shift[i] = {};
-            return;
         }
-        const auto max_shift = static_cast<float>(d.model.particle_spacing / 4);
-        const Vec3<float> p = d.state.position[i] + d.work.moved[i].vector();
-        Vec3<float> shift = undo_overlap(d.model, d.ground, p, max_shift, grain_rank(d.state.id[i]));
-        if (spread) shift += d.work.shift[i];
-        const float size = length(shift);
-        d.work.shift[i] = size > max_shift ? shift * (max_shift / size) : shift;
     }
 };
 
 /// The end of the step, which is above ground and outside of buildings, and the velocity.
 struct Finish {
     Data d;
-    float inverse_time_step{};
 
     TALUS_DEVICE void operator()(std::uint32_t i) const {
         if (d.state.moves(i)) {
@@ -237,7 +140,7 @@ struct Finish {
             d.work.moved[i] = row_of(displacement);
             // Impacts are where contact was, before the shift.
             d.work.corrected[i] = d.state.position[i] + displacement;
-            d.state.velocity[i] = displacement * inverse_time_step;
+            d.state.velocity[i] = displacement * d.step.inverse_time_step;
             d.state.position[i] = end;
         } else {
             d.work.corrected[i] = d.state.position[i];
@@ -265,7 +168,7 @@ struct CountImpacts {
 
     TALUS_DEVICE void operator()(std::uint32_t i) const {
         std::uint32_t count = 0;
-        const Walls& walls = d.work.walls[i];
+        const WallContacts& walls = d.work.walls[i];
         for (std::size_t f = 0; f < walls.faces.size() && walls.faces[f].building >= 0; ++f) {
             if (push_of_wall(d, i, f) > 0) ++count;
         }
@@ -281,7 +184,7 @@ struct WriteImpacts {
 
     TALUS_DEVICE void operator()(std::uint32_t i) const {
         std::uint32_t at = d.work.index[i];
-        const Walls& walls = d.work.walls[i];
+        const WallContacts& walls = d.work.walls[i];
         const double mass = density_of(d.model, d.state, i) * d.model.particle_volume();
         for (std::size_t f = 0; f < walls.faces.size() && walls.faces[f].building >= 0; ++f) {
             const float push = push_of_wall(d, i, f);
@@ -295,63 +198,35 @@ struct WriteImpacts {
     }
 };
 
-/// Eq. (5) as XSPH smoothing; the sum weights both particles of a pair equally, so momentum is conserved.
 template <class Smoothing>
 struct ApplyViscosity {
     Data d;
-    PairKernel<Smoothing> pair;
-    float smoothing{};
+    stages::PairKernel<Smoothing> kernel;
 
     TALUS_DEVICE void operator()(std::uint32_t i) const {
-        if (!d.state.moves(i)) return;
-        const Vec3<float> p = d.state.position[i], own = d.work.velocity_before[i];
-        Vec3<float> change;
-        d.neighbours.for_each(i, [&](std::uint32_t j) {
-            const float weight = pair.value(length(p - d.state.position[j]));
-            change += (d.work.velocity_before[j] - own) * weight;
-        });
-        Vec3<float> after = own + change * smoothing;
-        if (d.model.viscosity_on_ground) {
-            const terrain::GroundSample<float> below = d.ground.terrain.sample(p.x, p.y);
-            after = slowed_by_ground(d.model, below, (p.z - below.height) * below.normal.z, after, smoothing);
-        }
-        d.state.velocity[i] = after;
+        if (d.state.moves(i)) stages::apply_viscosity(OneParticle{d, i}, kernel);
     }
 };
 
-/// Puts debris to sleep that has hardly moved, wakes debris beside moving debris; see cpu/particle_stages.cpp.
 struct UpdateSleep {
     Data d;
-    float time_step{}, rest_duration{}, sleep_square{}, wake_square{};
-    std::uint32_t awake{};
-    bool any_asleep{};
 
     TALUS_DEVICE void operator()(std::uint32_t i) const {
-        const bool moves = d.state.moves(i);
-        const float square = dot(d.state.velocity[i], d.state.velocity[i]);
-        const float still = moves && square < sleep_square ? d.state.still_time[i] + time_step : 0;
-        d.state.still_time[i] = still;
-        const bool at_wall = !d.ground.solids.empty() && d.work.walls[i].faces[0].building >= 0;
-        if (moves && still > rest_duration && !at_wall) {
-            d.state.asleep[i] = 1;
+        if (d.state.moves(i)) {
+            stages::update_sleep(OneParticle{d, i});
+        } else {
             d.state.still_time[i] = 0;
-            d.state.velocity[i] = {};
         }
-        if (!any_asleep || !moves || square <= wake_square) return;
-        d.neighbours.for_each(i, [&](std::uint32_t j) {
-            if (j >= awake) store_shared(d.state.asleep[j], std::uint8_t{0});
-        });
     }
 };
 
 /// Notes in `index` which particles stay on the terrain.
 struct MarkInside {
     Data d;
-    std::uint32_t awake{};
 
     TALUS_DEVICE void operator()(std::uint32_t i) const {
         const LocalPoint p = d.state.position[i];
-        d.work.index[i] = i >= awake || d.ground.terrain.covers(p.x, p.y) ? 1 : 0;
+        d.work.index[i] = i >= d.awake || d.ground.terrain.covers(p.x, p.y) ? 1 : 0;
     }
 };
 

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <optional>
 #include <span>
@@ -10,7 +9,9 @@
 #include "sim/physics/boundary_table.hpp"
 #include "sim/physics/contact.hpp"
 #include "sim/physics/density.hpp"
+#include "sim/stages/particle.hpp"
 #include "sim/state.hpp"
+#include "sim/step_constants.hpp"
 #include "terrain/ground_cover.hpp"
 #include "terrain/height_field.hpp"
 #include "terrain/solid_walls.hpp"
@@ -65,28 +66,12 @@ struct alignas(16) Row {
 /// The change to apply of a particle's stress, pressure included.
 struct alignas(16) StressRow {
     float xx, xy, xz, yy, yz, zz, unused, pressure;
+
+    [[nodiscard]] TALUS_DEVICE stages::StressChange<float> stress() const { return {xx, xy, xz, yy, yz, zz, pressure}; }
 };
 
-/// How a particle is held, where that is not the same for all (see resists_by_particle).
-struct Resistance {
-    float friction = 0;         ///< coefficient on the ground, lowered by pore pressure
-    float strength = 0;         ///< m, where it touches (see Grip)
-    float effective_share = 1;  ///< 1 - r_u
-    float ground_shear = 0;     ///< see shear_beside_ground
-};
-
-/// The ground below a particle, taken to be plane within the step; distances are those of a particle that is not
-/// displaced.
-struct GroundPlane {
-    float distance, slope;
-    Vec3<float> normal;
-};
-
-/// The walls beside a particle and its contacts with them; a face without a building is none.
-struct Walls {
-    std::array<BoundaryFace<float>, face_count - 1> faces;
-    std::array<ContactMemory<float>, face_count - 1> contacts;
-};
+using Resistance = stages::Resistance<float>;
+using GroundPlane = stages::GroundPlane<float>;
 
 // clang-format off
 /// What a step knows about its particles and forgets at its end: X(element, name, when). Those that only some runs need
@@ -105,7 +90,7 @@ struct Walls {
     X(float, tolerated_compression, true)   /* of what the step started with */                                        \
     X(Resistance, resistance, needs.resistance)                                                                        \
     X(ContactMemory<float>, contact, true)  /* with the ground */                                                      \
-    X(Walls, walls, needs.walls)                                                                                       \
+    X(WallContacts, walls, needs.walls)                                                                                \
     X(std::uint32_t, neighbour_count, true)                                                                            \
     X(std::uint64_t, key, true)             /* of the cell, and whether asleep */                                      \
     X(std::uint64_t, key_swap, true)                                                                                   \
@@ -142,6 +127,9 @@ struct Data {
     ParticleArrays state;
     WorkArrays work;
     NeighbourView neighbours;
+    StepConstants step;
+    double time{};                   ///< s, when the step started
+    std::uint32_t count{}, awake{};  ///< particles, and those of them that a step moves, which come first
 };
 
 }  // namespace talus::sim::device

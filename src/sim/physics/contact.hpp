@@ -53,6 +53,28 @@ TALUS_DEVICE Vec3<Real> resolve_face(const AnyModel& model, Real distance, const
                            friction_coefficient, strength, memory);
 }
 
+/// The walls beside a particle, which are plane within its step, and its contacts with them; a face without a building
+/// is none. Distances are those of a particle that is not displaced.
+struct WallContacts {
+    std::array<BoundaryFace<float>, face_count - 1> faces;
+    std::array<ContactMemory<float>, face_count - 1> contacts;
+};
+
+/// Resolves the contacts of a particle with walls one after another; returns its new displacement. `multiplier` is that
+/// of its density constraint, `share` that of the normal stress which its grains bear.
+template <class AnyModel>
+TALUS_DEVICE Vec3<float> resolve_walls(const AnyModel& model, WallContacts& walls, float multiplier, float share,
+                                       Vec3<float> displacement) {
+    const float friction = static_cast<float>(model.building_friction_coefficient) * share;
+    for (std::size_t f = 0; f < walls.faces.size(); ++f) {
+        const BoundaryFace<float>& wall = walls.faces[f];
+        if (wall.building < 0) break;
+        displacement += resolve_face(model, wall.distance + dot(displacement, wall.normal), wall.normal, displacement,
+                                     boundary_push(wall.slope, multiplier), friction, 0.0f, walls.contacts[f]);
+    }
+    return displacement;
+}
+
 /// The speed of a particle that a step has displaced, m/s, as it would be without the correction `push`, m, along the
 /// normal of a wall: that of what hits the wall. The wall's friction is not taken out.
 template <class Real>

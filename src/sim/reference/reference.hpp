@@ -58,6 +58,7 @@ struct State {
 /// against it; no run uses it.
 class Backend {
   public:
+    void begin_step(const Model&, const State&) {}
     void release_held(const Model& model, State& state);
     void apply_drag(const Model& model, const Ground& ground, State& state);
     void predict_positions(const Model& model, const Ground& ground, State& state);

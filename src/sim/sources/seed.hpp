@@ -19,13 +19,6 @@ namespace talus::sim {
                                           const std::vector<terrain::Inflow>& inflows, const params::SolverSpec& solver,
                                           double particle_spacing);
 
-/// Sets the model's values from the scene's material section. The model must have its kernel.
-void set_material(Model& model, const params::MaterialSpec& material);
-
-/// All constants of a run, from the scene's material and solver sections.
-[[nodiscard]] Model make_model(const params::MaterialSpec& material, const params::SolverSpec& solver,
-                               double particle_spacing, terrain::GroundCover cover = {});
-
 /// Fills the releases with particles at rest, and the model's release groups.
 ///
 /// Every column of the spacing's lattice gets as many particles as its share of volume, stacked on the ground; each
