@@ -165,7 +165,7 @@ std::string summary_text(const scene::Scene& scene, const run::RunResult& result
                                  "{5:.1f} degrees{6}",
                                  r.at_least ? "at least " : "", r.along_flow, decimals_for(r.along_flow, 0), r.straight,
                                  r.drop, r.runout_angle * degrees_per_radian,
-                                 r.at_least ? fmt::format("; debris left the {}", result.domain()) : ""));
+                                 r.at_least ? "; " + report::left_text(scene, result) : ""));
     }
     if (const double chainage = seen.run_out.front_chainage; std::isfinite(chainage)) {
         text += line("front", fmt::format("to chainage {:.{}f} m{}", chainage, decimals_for(seen.run_out.along_flow, 0),
