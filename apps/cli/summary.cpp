@@ -109,6 +109,19 @@ std::string verdict_text(const scene::Scene& scene, const run::RunVerdict& verdi
     return text;
 }
 
+/// Where the front came to, and why it stays behind the run-out where debris got too thin for it.
+std::string front_text(const scene::Scene& scene, const observe::Observation& seen) {
+    const double chainage = seen.run_out.front_chainage;
+    std::string text = fmt::format("to chainage {:.{}f} m", chainage, decimals_for(seen.run_out.along_flow, 0));
+    if (!seen.followed_path) return text;
+    text += " of the path that debris followed; until now chainages were along the traced one";
+    if (chainage < 0.9 * seen.run_out.along_flow) {
+        text += fmt::format("; beyond it debris was at most {:g} m deep (outputs.arrival_depth_m)",
+                            scene.spec.outputs.arrival_depth);
+    }
+    return text;
+}
+
 }  // namespace
 
 std::string status_name(run::RunStatus status) {
@@ -165,14 +178,9 @@ std::string summary_text(const scene::Scene& scene, const run::RunResult& result
                                  "{5:.1f} degrees{6}",
                                  r.at_least ? "at least " : "", r.along_flow, decimals_for(r.along_flow, 0), r.straight,
                                  r.drop, r.runout_angle * degrees_per_radian,
-                                 r.at_least ? fmt::format("; debris left the {}", result.domain()) : ""));
+                                 r.at_least ? "; " + report::left_text(scene, result) : ""));
     }
-    if (const double chainage = seen.run_out.front_chainage; std::isfinite(chainage)) {
-        text += line("front", fmt::format("to chainage {:.{}f} m{}", chainage, decimals_for(seen.run_out.along_flow, 0),
-                                          seen.followed_path ? " of the path that debris followed; until now chainages "
-                                                               "were along the traced one"
-                                                             : ""));
-    }
+    if (std::isfinite(seen.run_out.front_chainage)) text += line("front", front_text(scene, seen));
     const int decimals = decimals_for(seen.volume_released + seen.erosion.volume, 1);
     text += line("volume",
                  fmt::format("{0:.{5}f} m3 released: {1:.{5}f} deposited, {2:.{5}f} moving, {3:.{5}f} left the {4}",

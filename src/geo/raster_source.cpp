@@ -91,27 +91,28 @@ Status check_crs(const std::string& file, const std::string& driver, const OGRSp
     }
     const auto place = to_longitude_latitude(reference, centre);
     const std::string metric = metric_crs_for(place);
+    // With a system of heights, gdalwarp would convert them to metres but leave the name of their unit as it was.
+    const std::string target = (reference.IsVertical() != 0 ? "-novshift -t_srs " : "-t_srs ") + metric;
     const Crs crs = to_crs(reference);
     if (reference.IsGeographic() != 0) {
         return Error{fmt::format("{}: {} is geographic (degrees), a projected CRS in metres is needed: {}", file,
-                                 crs.label(), warp_command(file, "-t_srs " + metric, "_metric"))};
+                                 crs.label(), warp_command(file, target, "_metric"))};
     }
     if (reference.IsProjected() == 0 && reference.IsLocal() == 0) {
         return Error{fmt::format("{}: {} is not a projected CRS in metres: {}", file, crs.label(),
-                                 warp_command(file, "-t_srs " + metric, "_metric"))};
+                                 warp_command(file, target, "_metric"))};
     }
     const char* unit = nullptr;
     const double metres = reference.GetLinearUnits(&unit);
     if (std::abs(metres - 1) > 1e-9) {
         return Error{fmt::format("{}: {} is in {} of {:.6g} m, a CRS in metres is needed: {}", file, crs.label(),
-                                 unit != nullptr ? unit : "a unit", metres,
-                                 warp_command(file, "-t_srs " + metric, "_metric"))};
+                                 unit != nullptr ? unit : "a unit", metres, warp_command(file, target, "_metric"))};
     }
     // Web Mercator and similar systems are nominally metric, but their metre is not a metre on the ground.
     const auto scale = scale_factor(reference, centre);
     if (scale && std::abs(*scale - 1) > largest_scale_error) {
         return Error{fmt::format("{}: a metre of {} is {:.3f} m on the ground here, a CRS true to scale is needed: {}",
-                                 file, crs.label(), 1 / *scale, warp_command(file, "-t_srs " + metric, "_metric"))};
+                                 file, crs.label(), 1 / *scale, warp_command(file, target, "_metric"))};
     }
     return {};
 }

@@ -66,10 +66,10 @@ GDALDatasetUniquePtr translate(GDALDataset& from, const std::string& to, const C
         options ? GDALTranslate(to.c_str(), GDALDataset::ToHandle(&from), options.get(), &wrong_use) : nullptr));
 }
 
-/// As gdalwarp, computed as it is read.
+/// As gdalwarp, computed as it is read. Heights stay in their unit, whose name GDAL would keep on converted ones.
 GDALDatasetUniquePtr warp(GDALDataset& from, const MetricSystem& system) {
     CPLStringList arguments;
-    for (const char* word : {"-of", "VRT", "-r", "bilinear", "-ot", "Float32", "-dstnodata", "-9999"}) {
+    for (const char* word : {"-of", "VRT", "-novshift", "-r", "bilinear", "-ot", "Float32", "-dstnodata", "-9999"}) {
         arguments.AddString(word);
     }
     if (system.square_own > 0) {

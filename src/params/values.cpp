@@ -107,7 +107,8 @@ std::string Range::text() const {
 std::string allowed_text(const Parameter& parameter) {
     std::string text = kind_text(parameter);
     const std::string range = parameter.range.text();
-    if (!range.empty()) text += (std::isdigit(static_cast<unsigned char>(range.front())) ? " from " : " ") + range;
+    const bool between = range.find(" to ") != std::string::npos;
+    if (!range.empty()) text += (between ? " from " : " ") + range;
     if (!parameter.unit.empty()) text += " (" + parameter.unit + ")";
     return text;
 }

@@ -166,7 +166,7 @@ Json key_figures(const scene::Scene& scene, const run::RunResult& result) {
         ran ? fmt::format("{}\u00a0m in a straight line, drop {}\u00a0m{}{}",
                           fixed(o.run_out.straight, run_out_decimals),
                           fixed(o.run_out.drop, std::max(1, run_out_decimals)), front,
-                          o.run_out.at_least ? fmt::format("; debris left the {}", result.domain()) : "")
+                          o.run_out.at_least ? "; " + left_text(scene, result) : "")
             : "no debris ran out");
     add("runout_angle_deg", "Run-out angle", o.run_out.runout_angle * degrees_per_radian, "f1", ran ? "°" : "",
         std::isfinite(o.run_out.travel_angle) ? fmt::format("travel angle of the centre of mass\u00a0{}°",

@@ -70,6 +70,9 @@ struct NamedRun {
 [[nodiscard]] Json zoom(const run::RunResult& result);
 /// Whether a chainage of the flow path lies outside a zoom. Without a path there is no such place.
 [[nodiscard]] bool outside_zoom(const scene::Scene& scene, const run::RunResult& result, double chainage);
+/// What debris left whose run-out is at least that; where a scene takes a part of its terrain, which key has more of
+/// it.
+[[nodiscard]] std::string left_text(const scene::Scene& scene, const run::RunResult& result);
 /// Which laws the scene uses.
 [[nodiscard]] Json method(const scene::Scene& scene);
 [[nodiscard]] Json chosen_values(const scene::Scene& scene, const run::RunResult& result);

@@ -57,6 +57,11 @@ Json discharge_chart(const run::ZoomRecord& zoom) {
 
 }  // namespace
 
+std::string left_text(const scene::Scene& scene, const run::RunResult& result) {
+    if (result.zoom || !scene.spec.terrain.extent) return fmt::format("debris left the {}", result.domain());
+    return "debris left the part of the terrain that terrain.extent_m takes; a larger part shows how far it goes";
+}
+
 bool outside_zoom(const scene::Scene& scene, const run::RunResult& result, double chainage) {
     return result.zoom && !scene.flow_path.empty() && !result.covers(scene.flow_path.point_at(chainage));
 }

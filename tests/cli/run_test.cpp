@@ -362,5 +362,14 @@ TEST(Help, TeachesCommandsExitCodesAndEveryTunable) {
     EXPECT_EQ(run_program({}).out, general.out) << "without a command the program explains itself";
 }
 
+TEST(Run, SaysWhyTheFrontStaysBehindTheRunOut) {
+    const SmallScene scene;
+    const auto outcome = run_program({"run", "slope.toml", "--model", "depth_averaged", "-o", "result", "--set",
+                                      "solver.end_time_s=6", "--set", "outputs.arrival_depth_m=0.2"},
+                                     {.folder = scene.folder()});
+    ASSERT_EQ(outcome.exit_code, 0) << outcome.error;
+    EXPECT_THAT(outcome.out, HasSubstr("; beyond it debris was at most 0.2 m deep (outputs.arrival_depth_m)\n"));
+}
+
 }  // namespace
 }  // namespace talus::test

@@ -5,6 +5,7 @@
 
 #include "geo/raster.hpp"
 #include "geo/rasters.hpp"
+#include "geo/repair_raster.hpp"
 #include "geo/terrain_frame.hpp"
 #include "support/fixtures.hpp"
 
@@ -135,6 +136,36 @@ TEST_F(BadRaster, GeographicCrsNamesTheUtmZoneOfItsCentre) {
                                      HasSubstr("gdalwarp -t_srs EPSG:32650 -r bilinear -ot Float32 -dstnodata -9999 " +
                                                file + " " + folder_.file("dem_metric.tif"))));
     EXPECT_THAT(refusal(write({.x_min = -72, .y_min = -16.5, .cell = 0.001, .epsg = 4326})), HasSubstr("EPSG:32719"));
+}
+
+/// The file of an office whose positions and heights are in feet, with elevations from 500 to 520 feet.
+std::string write_in_feet(const std::string& file) {
+    OGRSpatialReference reference;
+    reference.SetFromUserInput("EPSG:6529+6360");  // NAD83(2011) / New Mexico Central + NAVD88 height, both in feet
+    char* wkt = nullptr;
+    reference.exportToWkt(&wkt);
+    const std::string text = wkt;
+    CPLFree(wkt);
+    return test::write_raster(file, {.x_min = 1650000, .y_min = 1700000, .cell = 10, .wkt = text},
+                              [](int column, int row) { return 500 + 20 * (column + row) / 33.0; });
+}
+
+TEST_F(BadRaster, FeetInBothDirectionsAreMendedOneAfterTheOther) {
+    const std::string file = write_in_feet(folder_.file("feet.tif"));
+    EXPECT_THAT(refusal(file), AllOf(HasSubstr("a CRS in metres is needed"),
+                                     HasSubstr("gdalwarp -novshift -t_srs EPSG:32613 -r bilinear")));
+    // The same, of an upload: heights are converted once.
+    const std::string mended = folder_.file("mended.tif");
+    Mending mending;
+    mending.metric = true;
+    mending.metres_per_unit = 0.3048006096;
+    const Status done = repair_raster(file, mended, mending, 1e6);
+    ASSERT_TRUE(done.ok()) << done.error().message;
+    const auto terrain = read_terrain_raster(mended, 1, std::nullopt);
+    ASSERT_TRUE(terrain.ok()) << terrain.error().message;
+    const auto& heights = terrain->grid.values;
+    EXPECT_THAT(heights, testing::Each(testing::AnyOf(testing::IsNan(), testing::FloatNear(510 * 0.3048F, 3.1F))));
+    EXPECT_FALSE(std::isnan(terrain->grid.at(10, 7)));
 }
 
 TEST_F(BadRaster, MissingCrs) {

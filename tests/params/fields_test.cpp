@@ -223,6 +223,7 @@ TEST(FieldTable, ValuesOutOfRangeNameTheRange) {
     const Parameter& viscosity = parameter("material", "viscosity");
     EXPECT_EQ(problem_with(viscosity, 0.0), "");
     EXPECT_EQ(problem_with(viscosity, 1.0), "a number from 0 to below 1");
+    EXPECT_EQ(problem_with(parameter("outputs", "geoid_height_m"), 300.0), "a number from -200 to 200 (m)");
     const Parameter& band = parameter("terrain", "band");
     EXPECT_EQ(problem_with(band, std::int64_t{0}), "a whole number from 1 to 65535");
     EXPECT_EQ(problem_with(parameter("solver", "kernel"), std::string("gauss")),

@@ -208,6 +208,17 @@ TEST(Report, OfADepthAveragedRunSaysWhetherDebrisFlies) {
     EXPECT_FALSE(has(words, "does not leave the ground"));
 }
 
+TEST(Report, SaysThatDebrisLeftThePartOfTheTerrainThatASceneTakes) {
+    Sample s;
+    s.result.observation.run_out.at_least = true;
+    s.scene.spec.terrain.extent.reset();
+    EXPECT_TRUE(has(s.html(), "; debris left the terrain"));
+    s.scene.spec.terrain.extent = Extent{0, 0, 100, 100};
+    EXPECT_TRUE(
+        has(s.html(), "; debris left the part of the terrain that terrain.extent_m takes; a larger part shows"));
+    EXPECT_FALSE(has(s.html(), "; debris left the terrain"));
+}
+
 TEST(Report, MissingVolumeIsNotCalledClosed) {
     Sample s;
     EXPECT_TRUE(has(s.html(), "<strong>closed</strong>"));
