@@ -10,7 +10,7 @@
 namespace talus::report {
 namespace {
 
-const observe::GaugeRecord& record_of(const NamedRun& run, std::size_t gauge) {
+const observe::GaugeRecord& gauge_record(const NamedRun& run, std::size_t gauge) {
     return run.result->observation.gauges.at(gauge);
 }
 
@@ -19,8 +19,8 @@ std::string place_of(const terrain::Gauge& gauge) {
                                          : fmt::format("{} E {} N", fixed(gauge.at.x, 1), fixed(gauge.at.y, 1));
 }
 
-void add_values(Json& row, const NamedRun& run, std::size_t k) {
-    const observe::GaugeRecord& record = record_of(run, k);
+void add_readings(Json& row, const NamedRun& run, std::size_t k) {
+    const observe::GaugeRecord& record = gauge_record(run, k);
     row["arrival_s"] = number_or_null<Json>(record.arrival_time);
     if (row["arrival_s"].is_null() && !run.result->covers(record.gauge.at)) row["arrival_s"] = "outside the zoom";
     row["peak_depth_m"] = record.peak_depth;
@@ -46,29 +46,30 @@ Json gauges(const std::vector<NamedRun>& runs) {
                                     {"peak_speed_mps", "Peak speed", "m/s", "f1"},
                                     {"peak_speed_time_s", "at", "s", "f1"}},
                          .place_of = [](const NamedRun& run, std::size_t k) -> Json {
-                             const terrain::Gauge& gauge = record_of(run, k).gauge;
+                             const terrain::Gauge& gauge = gauge_record(run, k).gauge;
                              return {{"gauge", gauge.name}, {"place", place_of(gauge)}};
                          },
-                         .add_values = add_values};
-    const PlacePlots plots{.title = "Depth and speed at gauges",
-                           .first_axis = "depth, m",
-                           .second_axis = "speed, m/s",
-                           .shows = [](const NamedRun& run, std::size_t k) { return record_of(run, k).peak_depth > 0; },
-                           .curves =
-                               [](const NamedRun& run, std::size_t k) {
-                                   PlacePlots::Curves curves;
-                                   for (const observe::GaugeSample& s : record_of(run, k).rows) {
-                                       curves.time.push_back(s.time);
-                                       curves.first.push_back(s.depth);
-                                       curves.second.push_back(s.speed);
-                                   }
-                                   return curves;
-                               },
-                           .name =
-                               [&](std::size_t k) {
-                                   const terrain::Gauge& gauge = record_of(runs.front(), k).gauge;
-                                   return fmt::format("{}, {}", shortened(gauge.name, 40), place_of(gauge));
-                               }};
+                         .add_values = add_readings};
+    const PlacePlots plots{
+        .title = "Depth and speed at gauges",
+        .first_axis = "depth, m",
+        .second_axis = "speed, m/s",
+        .shows = [](const NamedRun& run, std::size_t k) { return gauge_record(run, k).peak_depth > 0; },
+        .curves =
+            [](const NamedRun& run, std::size_t k) {
+                PlacePlots::Curves curves;
+                for (const observe::GaugeSample& s : gauge_record(run, k).rows) {
+                    curves.time.push_back(s.time);
+                    curves.first.push_back(s.depth);
+                    curves.second.push_back(s.speed);
+                }
+                return curves;
+            },
+        .name =
+            [&](std::size_t k) {
+                const terrain::Gauge& gauge = gauge_record(runs.front(), k).gauge;
+                return fmt::format("{}, {}", shortened(gauge.name, 40), place_of(gauge));
+            }};
     PlaceChart drawn = place_chart(runs, count, plots);
     return {{"table", place_table(runs, count, rows)},
             {"chart", std::move(drawn.chart)},
