@@ -51,7 +51,10 @@ Result<json> json_of(const Scenario& scenario, const std::string& name) {
     if (name == "setup") return scenario.setup_json();
     if (name == "impacts") return scenario.impacts_json();
     if (name == "series") return scenario.series_json();
-    return Error{fmt::format("name = \"{}\": must be scene, state, verdict, setup, impacts or series", name)};
+    if (name == "measures") return scenario.measures_json();
+    if (name == "results") return scenario.results_json();
+    return Error{
+        fmt::format("name = \"{}\": must be scene, state, verdict, setup, impacts, series, measures or results", name)};
 }
 
 Answers::Front front_of(const Scenario& scenario) {
