@@ -10,27 +10,10 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include "call.hpp"
-#include "core/grid.hpp"
-#include "core/try.hpp"
 #include "grid_geometry.hpp"
-#include "handle.hpp"
-#include "talus.h"
+#include "names.hpp"
 
 namespace {
-
-using talus::Error;
-using talus::Grid;
-using talus::GridGeometry;
-using talus::Result;
-using talus::Status;
-using talus::embed::Answers;
-using talus::embed::buffer_of;
-using talus::embed::check_size;
-using talus::embed::give;
-using talus::embed::guarded;
-using talus::embed::need;
-using talus::twin::Scenario;
 
 constexpr float no_value = std::numeric_limits<float>::quiet_NaN();
 
