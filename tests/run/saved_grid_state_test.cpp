@@ -1,4 +1,3 @@
-#include <stdexcept>
 #include <string>
 #include <utility>
 #include <vector>
@@ -6,7 +5,6 @@
 #include <gmock/gmock.h>
 
 #include "run/saved_runs.hpp"
-#include "scene/scene_folder.hpp"
 
 namespace talus::run {
 namespace {
@@ -15,16 +13,12 @@ using testing::HasSubstr;
 
 /// The depth-averaged model down a slope and out on level ground: a release that entrains its bed, one that starts
 /// later with a pore pressure of its own, an inflow, a barrier, a house, a gauge and a section.
-class SavedGridState : public scene::SceneFolder {
+class SavedGridState : public SavedRuns {
   protected:
     void SetUp() override {
-        write_terrain("dem.tif", [](double x, double y) {
-            return 200 - 0.5 * std::min(x - west, 70.0) + 0.1 * std::abs(y - (south + 100));
-        });
-        write_features("release.geojson", {rectangle(20, 90, 40, 110)});
+        write_inputs();
         write_features("late.geojson", {rectangle(60, 90, 70, 110)});
         write_features("house.geojson", {rectangle(100, 96, 108, 104)});
-        write("flow.csv", "time_s,discharge_m3ps,velocity_mps\n0,30,4\n7,30,4\n");
         write("scene.toml", R"([terrain]
 file = "dem.tif"
 [[release]]
@@ -61,16 +55,6 @@ friction_coefficient = 0.2
 model = "depth_averaged"
 end_time_s = 8
 )");
-    }
-
-    [[nodiscard]] scene::Scene loaded(const std::vector<std::string>& overrides = {}) const {
-        auto scene = scene::load_scene(folder / "scene.toml", overrides);
-        if (!scene) throw std::runtime_error(scene.error().message);
-        return std::move(*scene);
-    }
-    [[nodiscard]] std::string refusal(const std::string& state, const std::vector<std::string>& overrides) const {
-        const auto result = run_from(loaded(overrides), state);
-        return result ? "(it ran)" : result.error().message;
     }
 };
 

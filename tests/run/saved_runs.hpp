@@ -1,14 +1,19 @@
 #pragma once
 
+#include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <cstring>
 #include <optional>
 #include <stdexcept>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include <gtest/gtest.h>
 
 #include "run/run_scene.hpp"
+#include "scene/scene_folder.hpp"
 
 /// Runs that save a state and start from one, and whether two have the same results.
 namespace talus::run {
@@ -30,6 +35,34 @@ inline Result<RunResult> run_from(const scene::Scene& scene, const std::string& 
     options.start_from_file = "run.state";
     return run_scene(scene, options);
 }
+
+/// Down a slope and out on level ground: release.geojson near the top and flow.csv, for an inflow below it.
+class SavedRuns : public scene::SceneFolder {
+  protected:
+    /// `always`: values of every run.
+    explicit SavedRuns(std::vector<std::string> always = {}) : always_(std::move(always)) {}
+
+    void write_inputs() const {
+        write_terrain("dem.tif", [](double x, double y) {
+            return 200 - 0.5 * std::min(x - west, 70.0) + 0.1 * std::abs(y - (south + 100));
+        });
+        write_features("release.geojson", {rectangle(20, 90, 40, 110)});
+        write("flow.csv", "time_s,discharge_m3ps,velocity_mps\n0,30,4\n7,30,4\n");
+    }
+    [[nodiscard]] scene::Scene loaded(std::vector<std::string> overrides = {}) const {
+        overrides.insert(overrides.begin(), always_.begin(), always_.end());
+        auto scene = scene::load_scene(folder / "scene.toml", overrides);
+        if (!scene) throw std::runtime_error(scene.error().message);
+        return std::move(*scene);
+    }
+    [[nodiscard]] std::string refusal(const std::string& state, const std::vector<std::string>& overrides) const {
+        const auto result = run_from(loaded(overrides), state);
+        return result ? "(it ran)" : result.error().message;
+    }
+
+  private:
+    std::vector<std::string> always_;
+};
 
 inline void expect_same_map(const Grid<float>& a, const Grid<float>& b, const char* name) {
     ASSERT_EQ(a.values.size(), b.values.size()) << name;

@@ -1,13 +1,11 @@
 #include "run/saved_state.hpp"
 
-#include <stdexcept>
 #include <utility>
 
 #include <gmock/gmock.h>
 
 #include "run/run_scene.hpp"
 #include "run/saved_runs.hpp"
-#include "scene/scene_folder.hpp"
 
 namespace talus::run {
 namespace {
@@ -16,15 +14,12 @@ using testing::HasSubstr;
 
 /// Down a slope and out on level ground: a release that entrains its bed, an inflow, a heap at rest on the level, a
 /// barrier that fails, one that stands, and a gauge.
-class SavedState : public scene::SceneFolder {
+class SavedState : public SavedRuns {
   protected:
+    SavedState() : SavedRuns({"solver.target_particle_count=600", "solver.end_time_s=8"}) {}
     void SetUp() override {
-        write_terrain("dem.tif", [](double x, double y) {
-            return 200 - 0.5 * std::min(x - west, 70.0) + 0.1 * std::abs(y - (south + 100));
-        });
-        write_features("release.geojson", {rectangle(20, 90, 40, 110)});
+        write_inputs();
         write_features("heap.geojson", {rectangle(150, 90, 170, 110)});
-        write("flow.csv", "time_s,discharge_m3ps,velocity_mps\n0,30,4\n7,30,4\n");
         write("scene.toml", R"([terrain]
 file = "dem.tif"
 [[release]]
@@ -56,18 +51,6 @@ y_m = 825100
 [material]
 friction_coefficient = 0.25
 )");
-    }
-
-    [[nodiscard]] scene::Scene loaded(std::vector<std::string> overrides = {}) const {
-        overrides.insert(overrides.begin(), {"solver.target_particle_count=600", "solver.end_time_s=8"});
-        auto scene = scene::load_scene(folder / "scene.toml", overrides);
-        if (!scene) throw std::runtime_error(scene.error().message);
-        return std::move(*scene);
-    }
-
-    [[nodiscard]] std::string refusal(const std::string& state, const std::vector<std::string>& overrides) const {
-        const auto result = run_from(loaded(overrides), state);
-        return result ? "(it ran)" : result.error().message;
     }
 };
 
