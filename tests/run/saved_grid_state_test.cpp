@@ -85,6 +85,8 @@ TEST_F(SavedGridState, HasDebrisInTheAirThatFliesOn) {
     const std::vector<std::string> keys = {"solver.flight=true"};
     const auto whole = run_scene(loaded(keys), {});
     ASSERT_TRUE(whole) << whole.error().message;
+    const auto on_the_ground = run_scene(loaded(), {});
+    ASSERT_NE(whole->observation.maps.peak_speed.values, on_the_ground->observation.maps.peak_speed.values);
     const auto rest = run_from(loaded(keys), state_at(loaded(keys), 4));
     ASSERT_TRUE(rest) << rest.error().message;
     expect_same(*whole, *rest);
@@ -93,19 +95,19 @@ TEST_F(SavedGridState, HasDebrisInTheAirThatFliesOn) {
 TEST_F(SavedGridState, OfTheEndIsContinuedToALaterOneAsIfThatHadBeenMeant) {
     const auto whole = run_scene(loaded(), {});
     ASSERT_TRUE(whole);
-    for (const std::optional<double> time : {std::optional<double>(), std::optional(5.0)}) {
-        const auto rest = run_from(loaded(), state_at(loaded({"solver.end_time_s=5"}), time));
+    for (const std::optional<double> time : {std::optional<double>(), std::optional(6.0)}) {
+        const auto rest = run_from(loaded(), state_at(loaded({"solver.end_time_s=6"}), time));
         ASSERT_TRUE(rest) << rest.error().message;
         expect_same(*whole, *rest);
     }
 }
 
 TEST_F(SavedGridState, OfALaterTimeThanTheEndHasNothingLeftToCompute) {
-    const std::string state = state_at(loaded(), 6);
-    const auto rest = run_from(loaded({"solver.end_time_s=4"}), state);
+    const std::string state = state_at(loaded(), 7);
+    const auto rest = run_from(loaded({"solver.end_time_s=6"}), state);
     ASSERT_TRUE(rest) << rest.error().message;
-    EXPECT_GE(rest->simulated_time, 6);
-    EXPECT_THAT(rest->stop_reason, HasSubstr("solver.end_time_s = 4"));
+    EXPECT_GE(rest->simulated_time, 7);
+    EXPECT_THAT(rest->stop_reason, HasSubstr("solver.end_time_s = 6"));
 }
 
 TEST_F(SavedGridState, OfTheEndAtRestStaysAtRest) {
