@@ -1,6 +1,9 @@
 # scripts/package.sh: five packages for Debian, and an archive of everything.
 set(TALUS_MAINTAINER "The talus developers <talus@example.org>" CACHE STRING
     "Who answers for Debian packages, as NAME <ADDRESS>; the default is a placeholder")
+if(NOT TALUS_MAINTAINER MATCHES "^[^<>@]*[^<>@ ] <[^<>@ ]+@[^<>@ ]+[.][a-z]+>$")
+  message(FATAL_ERROR "TALUS_MAINTAINER = \"${TALUS_MAINTAINER}\"; it must be NAME <ADDRESS>, as \"The talus developers <talus@example.org>\"")
+endif()
 
 set(CPACK_PACKAGE_VENDOR "talus")
 set(CPACK_PACKAGE_CONTACT ${TALUS_MAINTAINER})

@@ -52,7 +52,7 @@ the deposit, 15 % of force and pressure, and the same buildings.
 what crosses a rectangle --zoom-margin metres around it becomes inflow there. --zoom-polygon FILE takes another area. The
 section [zoom] of a scene is the same, and has the spacing of its particles. What leaves the area is not fed back.
 
---save-state FILE saves the state of the particles at the end, FILE@TIME after the step that reaches TIME seconds.
+--save-state FILE saves the state of the debris at the end, FILE@TIME after the step that reaches TIME seconds.
 --from-state FILE starts from it: the results are those of the run that was not interrupted, to the bit. The scene must be
 the same but for solver.end_time_s, so that a longer one continues a run.
 )";

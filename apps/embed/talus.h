@@ -154,7 +154,7 @@ typedef struct talus_building {
 
 typedef struct talus_arrays {
     size_t size;
-    const char* crs; /* projected and metric: "EPSG:2326", or WKT */
+    const char* crs; /* projected and metric: "EPSG:2326", or WKT; "local": metres of its own, as those of a flume */
     talus_grid grid;
     const float* elevation;          /* m; NaN: not known */
     const float* release;            /* m, vertical thickness of the debris that fails, part of `elevation`; 0: none */
@@ -322,7 +322,11 @@ TALUS_API int talus_apply(talus_simulation* simulation, const char* action, cons
 
 /*
  * "scene", "state", "setup", "impacts" or "series" as JSON, as docs/protocol.md has them; "verdict": whether the
- * results so far can be relied on, as `verdict` of docs/results.md.
+ * results so far can be relied on, as `verdict` of docs/results.md; "results": what a report of the run so far shows, as
+ * results.json of docs/results.md; "measures": {"run_out": {"along_flow_m", "straight_m", "at_least" (debris left the
+ * terrain), "toe_x_m", "toe_y_m", "drop_m", "runout_angle_deg", "travel_angle_deg", "front_chainage_m"}, "gauges":
+ * [{"name", "x_m", "y_m", "time_s": [...], "depth_m": [...], "speed_mps": [...]}], "crs_wkt"}, with null where there is
+ * no value.
  */
 TALUS_API int talus_get_json(const talus_simulation* simulation, const char* name, const char** json,
                              talus_error* error);

@@ -9,26 +9,14 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include "call.hpp"
 #include "core/input_file.hpp"
-#include "core/try.hpp"
-#include "handle.hpp"
+#include "names.hpp"
 #include "products/text_file.hpp"
-#include "talus.h"
 
 namespace {
 
 namespace fs = std::filesystem;
 using nlohmann::json;
-using talus::Error;
-using talus::Result;
-using talus::Status;
-using talus::embed::Answers;
-using talus::embed::check_size;
-using talus::embed::give;
-using talus::embed::guarded;
-using talus::embed::need;
-using talus::twin::Scenario;
 
 std::int32_t phase_of(const Scenario& scenario) {
     switch (scenario.phase()) {
@@ -51,7 +39,10 @@ Result<json> json_of(const Scenario& scenario, const std::string& name) {
     if (name == "setup") return scenario.setup_json();
     if (name == "impacts") return scenario.impacts_json();
     if (name == "series") return scenario.series_json();
-    return Error{fmt::format("name = \"{}\": must be scene, state, verdict, setup, impacts or series", name)};
+    if (name == "measures") return scenario.measures_json();
+    if (name == "results") return scenario.results_json();
+    return Error{
+        fmt::format("name = \"{}\": must be scene, state, verdict, setup, impacts, series, measures or results", name)};
 }
 
 Answers::Front front_of(const Scenario& scenario) {

@@ -10,27 +10,10 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include "call.hpp"
-#include "core/grid.hpp"
-#include "core/try.hpp"
 #include "grid_geometry.hpp"
-#include "handle.hpp"
-#include "talus.h"
+#include "names.hpp"
 
 namespace {
-
-using talus::Error;
-using talus::Grid;
-using talus::GridGeometry;
-using talus::Result;
-using talus::Status;
-using talus::embed::Answers;
-using talus::embed::buffer_of;
-using talus::embed::check_size;
-using talus::embed::give;
-using talus::embed::guarded;
-using talus::embed::need;
-using talus::twin::Scenario;
 
 constexpr float no_value = std::numeric_limits<float>::quiet_NaN();
 
@@ -93,32 +76,46 @@ void add(float value, Several several, float& sum) {
     }
 }
 
-/// How many of the points x_min + (i + 1/2) spacing lie in each of `count` cells from `from` on.
-std::vector<double> points_in(double from, double cell, int count, double x_min, double spacing) {
+/// Along an axis: which of the wanted cells holds the centre of each cell of the map, and how many centres each would
+/// hold, had the map no edges. Both by the same rounding, so that a centre on an edge counts where it is added.
+struct Centres {
+    std::vector<int> wanted;  ///< -1: none
+    std::vector<double> count;
+};
+Centres centres_in(double from, double cell, int count, double x_min, double spacing, int own) {
     const auto first_in = [&](int k) { return std::ceil((from + k * cell - x_min) / spacing - 0.5); };
-    std::vector<double> points;
-    points.reserve(static_cast<std::size_t>(count));
-    for (int k = 0; k < count; ++k) points.push_back(first_in(k + 1) - first_in(k));
-    return points;
+    Centres centres{std::vector<int>(static_cast<std::size_t>(own), -1), {}};
+    centres.count.reserve(static_cast<std::size_t>(count));
+    for (int k = 0; k < count; ++k) {
+        const double first = first_in(k), last = first_in(k + 1);
+        centres.count.push_back(last - first);
+        for (double i = std::max(0.0, first); i < std::min<double>(own, last); ++i) {
+            centres.wanted[static_cast<std::size_t>(i)] = k;
+        }
+    }
+    return centres;
 }
 
 Grid<float> on_cells(const Grid<float>& from, Several several, const GridGeometry& wanted) {
     Grid<float> to(wanted, no_value);
     if (from.values.empty()) return to;
     const GridGeometry& g = from.geometry;
-    std::size_t cell = 0;
+    const Centres columns = centres_in(wanted.x_min, wanted.cell, wanted.columns, g.x_min, g.cell, g.columns),
+                  rows = centres_in(wanted.y_min, wanted.cell, wanted.rows, g.y_min, g.cell, g.rows);
     for (int row = 0; row < g.rows; ++row) {
-        for (int column = 0; column < g.columns; ++column) {
-            if (cell_at(wanted, g.centre(column, row), cell)) add(from.at(column, row), several, to.values[cell]);
+        const int to_row = rows.wanted[static_cast<std::size_t>(row)];
+        for (int column = 0; to_row >= 0 && column < g.columns; ++column) {
+            const int to_column = columns.wanted[static_cast<std::size_t>(column)];
+            if (to_column >= 0) add(from.at(column, row), several, to.at(to_column, to_row));
         }
     }
     // A mean is over all cells of the map that there would be, had it no edges: beyond them there is no debris.
-    const std::vector<double> in_column = points_in(wanted.x_min, wanted.cell, wanted.columns, g.x_min, g.cell),
-                              in_row = points_in(wanted.y_min, wanted.cell, wanted.rows, g.y_min, g.cell);
+    std::size_t cell = 0;
     for (int row = 0; row < wanted.rows; ++row) {
         for (int column = 0; column < wanted.columns; ++column) {
             float& value = to.at(column, row);
-            const double centres = in_column[static_cast<std::size_t>(column)] * in_row[static_cast<std::size_t>(row)];
+            const double centres =
+                columns.count[static_cast<std::size_t>(column)] * rows.count[static_cast<std::size_t>(row)];
             if (!(centres > 0)) {
                 value = cell_at(g, wanted.centre(column, row), cell) ? from.values[cell] : no_value;
             } else if (several == Several::mean) {

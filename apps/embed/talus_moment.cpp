@@ -5,23 +5,12 @@
 
 #include <fmt/format.h>
 
-#include "call.hpp"
-#include "core/try.hpp"
-#include "handle.hpp"
-#include "talus.h"
+#include "names.hpp"
 
 namespace {
 
-using talus::Error;
 using talus::LocalPoint;
-using talus::Status;
-using talus::embed::Answers;
 using talus::embed::Before;
-using talus::embed::check_size;
-using talus::embed::give;
-using talus::embed::guarded;
-using talus::embed::need;
-using talus::twin::Scenario;
 
 /// The step before the present state, if it is kept.
 const Before* step_before(const talus_simulation& simulation) {

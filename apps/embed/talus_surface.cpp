@@ -6,28 +6,13 @@
 
 #include <fmt/format.h>
 
-#include "call.hpp"
-#include "core/grid.hpp"
-#include "core/try.hpp"
-#include "handle.hpp"
+#include "names.hpp"
 #include "products/debris_surface.hpp"
-#include "talus.h"
 
 namespace {
 
-using talus::Error;
-using talus::Grid;
-using talus::GridGeometry;
 using talus::LocalPoint;
-using talus::Status;
-using talus::embed::Answers;
 using talus::embed::Buffer;
-using talus::embed::buffer_of;
-using talus::embed::check_size;
-using talus::embed::give;
-using talus::embed::guarded;
-using talus::embed::need;
-using talus::twin::Scenario;
 
 constexpr float thinnest = 0.01F;  // m; thinner debris has no surface of its own
 

@@ -30,6 +30,7 @@ class _Folder:
     def __init__(self, folder: str | os.PathLike[str]) -> None:
         self.folder = Path(os.fsdecode(arguments.path("folder", folder)))
         self._kept: tempfile.TemporaryDirectory[str] | None = None
+        self._facts: dict[str, Any] = {}  # what the program says of all runs
 
     def _json(self, name: str) -> dict[str, Any]:
         try:
@@ -54,6 +55,12 @@ class _Folder:
         """What the report shows, as results.json of docs/results.md."""
         return self._json("results.json")
 
+    @property
+    def verdict(self) -> dict[str, Any]:
+        """The worst of all runs by check, as `verdict` of docs/results.md."""
+        found: dict[str, Any] = self._facts["verdict"]
+        return found
+
 
 _Made = TypeVar("_Made", "Ensemble", "Calibration")
 
@@ -63,15 +70,9 @@ class Ensemble(_Folder):
 
     def __init__(self, folder: str | os.PathLike[str]) -> None:
         super().__init__(folder)
-        self.statistics = self._json("statistics.json")  #: percentiles and sensitivity of every result
+        self.statistics = self._facts = self._json("statistics.json")  #: percentiles and sensitivity of every result
         if "thresholds" not in self.statistics:
             raise InputError(f"{self.folder}: is not the folder of an ensemble")
-
-    @property
-    def verdict(self) -> dict[str, Any]:
-        """The worst of all runs by check, as `verdict` of docs/results.md."""
-        found: dict[str, Any] = self.statistics["verdict"]
-        return found
 
     @property
     def distributions(self) -> Table:
@@ -109,7 +110,7 @@ class Calibration(_Folder):
 
     def __init__(self, folder: str | os.PathLike[str]) -> None:
         super().__init__(folder)
-        self.numbers = self._json("calibration.json")  #: all numbers, as the program has them
+        self.numbers = self._facts = self._json("calibration.json")  #: all numbers, as the program has them
 
     @property
     def best(self) -> dict[str, float]:
@@ -130,12 +131,6 @@ class Calibration(_Folder):
     def warnings(self) -> list[str]:
         """What the intervals are to be read with."""
         return [str(text) for text in self.numbers["warnings"]]
-
-    @property
-    def verdict(self) -> dict[str, Any]:
-        """The worst of all runs by check, as `verdict` of docs/results.md."""
-        found: dict[str, Any] = self.numbers["verdict"]
-        return found
 
     @property
     def factors(self) -> Table:

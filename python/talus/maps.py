@@ -73,12 +73,13 @@ class Map:
 
     def on_grid(self, extent: Extent, cell_m: float | None = None) -> Map:
         """The same map on the cells of `cell_m`, m (None: as its own), between west, south, east and north edge. Beyond
-        its own edges there is no value. A cell as large as its own, or smaller, has the value of that in which its middle
-        lies. A larger cell has the greatest of the values in it; the least arrival time; of depth, deposit and erosion the
-        mean, so that volumes stay."""
+        its own edges there is no value. A cell smaller than its own has the value of that in which its middle
+        lies. A larger cell has the greatest of the values whose cells have their middle in it; the least arrival time; of
+        depth, deposit and erosion the mean, with 0 where there is no value, so that a layer of one depth keeps that, and
+        volumes stay where `cell_m` is a multiple of its own. As talus_get_map_on() of talus.h."""
         cell = self.cell if cell_m is None else arguments.number("cell_m", cell_m, above=0)
         x_min, y_min, columns, rows = arguments.grid(extent, cell)
-        if cell > self.cell * (1 + 1e-9):
+        if cell >= self.cell * (1 - 1e-9):
             values = self._gathered(x_min, y_min, cell, (rows, columns))
         else:
             column = np.floor((x_min + (np.arange(columns) + 0.5) * cell - self.x_min) / self.cell).astype(np.int64)
@@ -89,8 +90,12 @@ class Map:
         return replace(self, values=values, x_min=x_min, y_min=y_min, cell=cell)
 
     def _gathered(self, x_min: float, y_min: float, cell: float, shape: tuple[int, int]) -> npt.NDArray[np.float32]:
-        column = np.floor((self.x - x_min) / cell).astype(np.int64)
-        row = np.floor((self.y - y_min) / cell).astype(np.int64)
+        # Which of the cells holds a middle of its own ones, and how many it would hold, had the map no edges: beyond them
+        # there is no debris. Both by the same rounding, so that a middle on an edge counts where it is added.
+        first_row = np.ceil((y_min + np.arange(shape[0] + 1) * cell - self.y_min) / self.cell - 0.5)
+        first_column = np.ceil((x_min + np.arange(shape[1] + 1) * cell - self.x_min) / self.cell - 0.5)
+        row = np.searchsorted(first_row, np.arange(self.values.shape[0]), side="right") - 1
+        column = np.searchsorted(first_column, np.arange(self.values.shape[1]), side="right") - 1
         within = np.logical_and.outer((row >= 0) & (row < shape[0]), (column >= 0) & (column < shape[1]))
         rows, columns = np.nonzero(within & np.isfinite(self.values))
         given, to = self.values[rows, columns], (row[rows], column[columns])
@@ -98,7 +103,8 @@ class Map:
         if self.name in _volumes:
             total = np.zeros(shape)
             np.add.at(total, to, given)
-            values[to] = total[to] * (self.cell / cell) ** 2
+            middles = np.outer(np.diff(first_row), np.diff(first_column))
+            values[to] = total[to] / middles[to]
         elif self.name.startswith("arrival_time"):
             np.fmin.at(values, to, given)
         else:

@@ -2,15 +2,11 @@
 
 from __future__ import annotations
 
-import json
 import math
 from dataclasses import dataclass, replace
-from pathlib import Path
 from typing import TYPE_CHECKING, Any, Iterable, Mapping
 
 import numpy as np
-
-from .table import Table
 
 if TYPE_CHECKING:
     import numpy.typing as npt
@@ -137,40 +133,19 @@ def _or_nan(value: float | None) -> float:
     return math.nan if value is None else float(value)
 
 
-@dataclass(frozen=True)
-class Products:
-    """What is only in the results that are written."""
-
-    run_out: RunOut
-    results: dict[str, Any]  #: results.json of docs/results.md
-    crs: str  #: as WKT
-    gauges: list[Gauge]
-
-    @classmethod
-    def read(cls, folder: Path) -> Products:
-        """From the folder of a run."""
-        table = Table.read(folder / "run_out.csv")
-        row = table.row(0)
-        results = json.loads((folder / "results.json").read_text(encoding="utf-8"))
-        place = json.loads((folder / "stac_item.json").read_text(encoding="utf-8"))["properties"]
-        return cls(
-            RunOut(
-                row["run_out_along_flow_m"], row["run_out_straight_m"], bool(row["at_least"]), (row["toe_x_m"], row["toe_y_m"]),
-                row["drop_m"], row["runout_angle_deg"], row["travel_angle_deg"], row["front_chainage_m"],
-            ),
-            results, place.get("proj:wkt2") or "", _gauges(folder),
-        )  # fmt: skip
+def run_out_of(measures: Mapping[str, Any]) -> RunOut:
+    """Of "measures" of the library."""
+    row = measures["run_out"]
+    return RunOut(
+        _or_nan(row["along_flow_m"]), _or_nan(row["straight_m"]), bool(row["at_least"]),
+        (_or_nan(row["toe_x_m"]), _or_nan(row["toe_y_m"])), _or_nan(row["drop_m"]), _or_nan(row["runout_angle_deg"]),
+        _or_nan(row["travel_angle_deg"]), _or_nan(row["front_chainage_m"]),
+    )  # fmt: skip
 
 
-def _gauges(folder: Path) -> list[Gauge]:
-    if not (folder / "gauges.csv").exists():
-        return []
-    rows = Table.read(folder / "gauges.csv")
-    manifest = json.loads((folder / "manifest.json").read_text(encoding="utf-8"))
-    places = manifest["results"]["gauges"]
-    # Those of one gauge follow one another; names need not be unique.
-    parts = [np.split(rows[column], len(places)) for column in ("time_s", "depth_m", "speed_mps")]
+def gauges_of(measures: Mapping[str, Any]) -> list[Gauge]:
+    """Likewise."""
     return [
-        Gauge(place["name"], place["x_m"], place["y_m"], *(part.astype(np.float64) for part in columns))
-        for place, *columns in zip(places, *parts)
+        Gauge(row["name"], row["x_m"], row["y_m"], numbers(row["time_s"]), numbers(row["depth_m"]), numbers(row["speed_mps"]))
+        for row in measures["gauges"]
     ]

@@ -7,8 +7,6 @@ import enum
 import json
 import os
 from dataclasses import dataclass
-from pathlib import Path
-from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING, Any, Callable, Mapping, NoReturn, Sequence
 
 import numpy as np
@@ -16,7 +14,7 @@ import numpy as np
 from . import _arguments as arguments
 from . import _library as lib
 from .maps import UNITS, Extent, Map
-from .measures import Energy, Front, Gauge, Products, RunOut, Structure, numbers, with_impacts
+from .measures import Energy, Front, Gauge, RunOut, Structure, gauges_of, numbers, run_out_of, with_impacts
 
 if TYPE_CHECKING:
     import numpy.typing as npt
@@ -84,7 +82,7 @@ class Simulation:
     ) -> Simulation:
         """A scene from arrays of the same shape, row 0 southernmost: `elevation` in m (NaN: not known), `release` the
         vertical thickness in m of the debris that fails, part of the elevation (0: none). `crs`: projected and metric,
-        "EPSG:2326". `folder`: a new or empty one that the scene is written into; such a simulation can be saved.
+        "EPSG:2326"; or "local", metres of its own, as those of a flume. `folder`: a new or empty one that the scene is written into; such a simulation can be saved.
         """
         ground = arguments.raster("elevation", elevation)
         thickness = arguments.raster("release", release)
@@ -255,7 +253,7 @@ class Simulation:
         """Reference system of the terrain: "EPSG:2326", or WKT where it has no code."""
         if not self._crs:
             named = str(self.json("scene")["crs"])
-            self._crs = named if named.startswith("EPSG:") else self._products().crs
+            self._crs = named if named.startswith("EPSG:") else str(self.json("measures")["crs_wkt"])
         return self._crs
 
     def map(self, name: str, extent: Extent | None = None, cell_m: float | None = None) -> Map:
@@ -318,22 +316,18 @@ class Simulation:
 
     @property
     def gauges(self) -> list[Gauge]:
-        """What the gauges of the scene have recorded; takes as long as `run_out`."""
-        return self._products().gauges if self.json("scene")["gauges"] else []
+        """What the gauges of the scene have recorded."""
+        return gauges_of(self.json("measures")) if self.json("scene")["gauges"] else []
 
     @property
     def run_out(self) -> RunOut:
-        """How far debris has come. The results are written to a temporary folder for it, in about half a second."""
-        return self._products().run_out
+        """How far debris has come so far."""
+        return run_out_of(self.json("measures"))
 
     def results(self) -> dict[str, Any]:
-        """What a report of the run so far shows, as results.json of docs/results.md; takes as long as `run_out`."""
-        return self._products().results
-
-    def _products(self) -> Products:
-        with TemporaryDirectory(prefix="talus_") as folder:
-            self.write_results(folder)
-            return Products.read(Path(folder))
+        """What a report of the run so far shows, as results.json of docs/results.md."""
+        results: dict[str, Any] = self.json("results")
+        return results
 
     def set(self, key: str, value: float) -> None:
         """A live key of the scene between two steps: "material.friction_coefficient"."""
@@ -350,7 +344,8 @@ class Simulation:
         return (created.value or b"").decode()
 
     def json(self, name: str) -> Any:
-        """"scene", "state", "setup", "impacts" or "series", as docs/protocol.md has them; "verdict"."""
+        """"scene", "state", "setup", "impacts" or "series", as docs/protocol.md has them; "verdict", "results" and "measures"
+        of talus.h."""
         text = ctypes.c_char_p()
         lib.call("talus_get_json", self._handle, arguments.text("name", name), ctypes.byref(text))
         return json.loads((text.value or b"").decode())

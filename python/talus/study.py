@@ -144,14 +144,13 @@ def run(
         if bar:
             print(file=sys.stderr)
         maps = {name: simulation.map(name, extent, cell_m) for name in UNITS}
-        products = simulation._products()
         verdict = simulation.verdict
         for warning in verdict["warnings"]:
             warnings.warn(warning, stacklevel=2)
         return Result(
             dict(settings or {}), simulation.phase, simulation.message, simulation.time, simulation.hash, simulation.crs,
-            simulation.front, verdict, simulation.structures, maps, products.run_out, simulation.energy, simulation.series,
-            simulation.gauges, products.results,
+            simulation.front, verdict, simulation.structures, maps, simulation.run_out, simulation.energy, simulation.series,
+            simulation.gauges, simulation.results(),
         )  # fmt: skip
 
 

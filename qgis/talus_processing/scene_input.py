@@ -94,6 +94,12 @@ class TalusAlgorithm(QgsProcessingAlgorithm):
     def add_layers(self, optional):
         polygons = [QgsProcessing.TypeVectorPolygon]
         self.addParameter(QgsProcessingParameterRasterLayer("TERRAIN", "Terrain (elevations, m)", optional=optional))
+        self.add_advanced(
+            QgsProcessingParameterBoolean(
+                "LOCAL", "Terrain has local coordinates in metres, as that of a laboratory (no reference system)",
+                defaultValue=False,
+            )
+        )  # fmt: skip
         self.addParameter(QgsProcessingParameterFeatureSource("RELEASE", "Release areas", polygons, optional=optional))
         self.add_advanced(
             QgsProcessingParameterString(
@@ -251,6 +257,8 @@ class TalusAlgorithm(QgsProcessingAlgorithm):
         for name, words in LAYER_KEYS.items():
             self.named.update({word: self.title_of(name) for word in words})
         arguments = ["scene", "new", "--dem", dem, "--release", release, "-o", folder]
+        if self.parameterAsBool(parameters, "LOCAL", context):
+            arguments += ["--crs", "local"]
         buildings = self.write_layer(parameters, "BUILDINGS", inputs, context)
         if buildings:
             arguments += ["--buildings", buildings]

@@ -19,6 +19,15 @@ class Entrainment {
     /// Entrains what came loose in the solver's last step; returns its volume, m3.
     double entrain(Solver& solver);
     [[nodiscard]] const terrain::Bed& bed() const { return bed_; }
+    /// What has been eroded, of the same bed.
+    template <class Archive>
+    void keep(Archive& archive) {
+        const std::size_t cells = loose_.size();
+        archive(bed_.eroded, loose_);
+        if constexpr (Archive::reading) {
+            if (bed_.eroded.size() != bed_.depth.size() || loose_.size() != cells) archive.fail();
+        }
+    }
 
   private:
     [[nodiscard]] double loosened(const Solver& solver, const terrain::BedMaterial& material, std::size_t cell,

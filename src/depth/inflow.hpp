@@ -24,6 +24,14 @@ class Inflows {
     /// Takes a step of the solver, of at most `longest` s. Returns the volume that came in, m3, whose depth by cell is
     /// added to `added`, m.
     [[nodiscard]] Result<double> advance(Solver& solver, double longest, Grid<float>& added);
+    /// What steps have changed, of the same inflows.
+    template <class Archive>
+    void keep(Archive& archive) {
+        archive(time_);
+        for (Source& source : sources_) {
+            for (Cell& cell : source.cells) archive(cell.owed);
+        }
+    }
 
   private:
     struct Cell {

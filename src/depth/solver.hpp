@@ -170,12 +170,38 @@ class Solver {
     /// Hash of time, depths and velocities of all cells, and of the pore pressure that debris carries.
     [[nodiscard]] std::uint64_t hash() const;
 
+    /// All that steps change, between two of them, for a solver of the same ground, material and faces.
+    template <class Archive>
+    void keep(Archive& archive) {
+        const std::size_t cells = depth_.size();
+        for (std::vector<float>* array : {&bed_, &slope_x_, &slope_y_, &depth_, &u_, &v_, &next_depth_, &next_u_,
+                                          &next_v_, &spare_, &next_spare_}) {
+            archive(*array);
+            if (array->size() != cells) return fail(archive);
+        }
+        // Each there, or not at all.
+        for (std::vector<float>* array :
+             {&pore_pressure_, &next_pore_pressure_, &height_, &climb_, &next_height_, &next_climb_, &inflow_.depth,
+              &inflow_.momentum_x, &inflow_.momentum_y, &inflow_.from_x, &inflow_.from_y}) {
+            archive(*array);
+            if (!array->empty() && array->size() != cells) return fail(archive);
+        }
+        const std::size_t tiles = changed_.size();
+        archive(changed_, segments_, drained_from_, pore_pressure_left_, highest_line_, signal_, time_, time_step_,
+                left_, steps_, cell_updates_);
+        if (changed_.size() != tiles || segments_.size() > tiles) fail(archive);
+    }
+
   private:
     [[nodiscard]] std::size_t index(int column, int row) const {
         return origin_ + static_cast<std::size_t>(row + margin) * stride_ + static_cast<std::size_t>(column + margin);
     }
     [[nodiscard]] std::size_t tile_of(int column, int row) const {
         return static_cast<std::size_t>((row + margin) / tile_edge) * tile_columns_ + (column + margin) / tile_edge;
+    }
+    template <class Archive>
+    static void fail(Archive& archive) {
+        if constexpr (Archive::reading) archive.fail();
     }
     [[nodiscard]] ActiveRow active_row(const Segment& segment, int row_of_tile) const;
     void mix_in(int column, int row, double depth, double u, double v, double pore_pressure_ratio);

@@ -165,7 +165,7 @@ void ForeignOutput::layers(const std::vector<ForeignLayer>& layers) {
     for (const ForeignLayer& layer : layers) {
         json fields = json::array();
         for (const Field& field : layer.fields) fields.push_back({{"name", field.name}, {"text", field.is_text}});
-        list.push_back({{"name", layer.name}, {"crs", layer.crs}, {"fields", fields}});
+        list.push_back({{"name", layer.name}, {"crs", layer.crs}, {"geojson", layer.of_geojson}, {"fields", fields}});
     }
     header(dumped({{"layers", list}}));
 }

@@ -40,6 +40,7 @@ struct ForeignRaster {
 
 struct ForeignLayer {
     std::string name, crs;
+    bool of_geojson = false;  ///< WGS 84 may be what is read where nothing is stated
     std::vector<Field> fields;
 };
 

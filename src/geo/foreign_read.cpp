@@ -333,7 +333,9 @@ Status ForeignReading::read_layers(GDALDataset& data) {
         OGRLayer* layer = data.GetLayer(k);
         OGRFeatureDefn& columns = *layer->GetLayerDefn();
         if (columns.GetGeomFieldCount() == 0) continue;
-        ForeignLayer one{to_utf8(layer->GetName()), "", {}};
+        ForeignLayer one;
+        one.name = to_utf8(layer->GetName());
+        one.of_geojson = was_geojson(data, *layer);
         const OGRSpatialReference* reference = layer->GetSpatialRef();
         TALUS_ASSIGN(one.crs, crs_of(reference));
         for (int f = 0; f < columns.GetFieldCount(); ++f) {

@@ -272,6 +272,7 @@ Result<ForeignLayer> read_layer(const json& written) {
     ForeignLayer layer;
     layer.name = text_in(written, "name").substr(0, 200);
     layer.crs = text_in(written, "crs");
+    layer.of_geojson = written.value("geojson", json(false)) == true;
     const json fields = written.value("fields", json());
     if (layer.name.empty() || !fields.is_array() || fields.size() > most_fields) return malformed;
     for (const json& field : fields) {
@@ -301,6 +302,7 @@ Status write_layer(Input& in, GDALDataset& data, const ForeignLayer& from, std::
     options.SetNameValue("FID", free_name("fid", columns).c_str());
     options.SetNameValue("GEOMETRY_NAME", free_name("geom", columns).c_str());
     options.SetNameValue("SPATIAL_INDEX", "NO");
+    if (from.of_geojson) options.SetNameValue("DESCRIPTION", geojson_mark);
     OGRLayer* layer = data.CreateLayer(free_name(from.name, names).c_str(), reference.IsEmpty() ? nullptr : &reference,
                                        wkbUnknown, options.List());
     if (layer == nullptr) return failed();

@@ -8,6 +8,7 @@
 #include <cpl_conv.h>
 #include <cpl_error.h>
 #include <fmt/format.h>
+#include <ogrsf_frmts.h>
 
 #include "core/try.hpp"
 #include "core/utf8.hpp"
@@ -158,6 +159,12 @@ Result<GDALDatasetUniquePtr> open_dataset(const std::string& name, unsigned flag
     }
     return Error{fmt::format("{}: cannot be read as a {}: {}", file, kind,
                              messages.failure_or("GDAL does not know the format"))};
+}
+
+bool was_geojson(GDALDataset& data, OGRLayer& layer) {
+    if (EQUAL(data.GetDriver()->GetDescription(), "GeoJSON")) return true;
+    const char* const description = layer.GetMetadataItem("DESCRIPTION");
+    return description != nullptr && std::string_view(description) == geojson_mark;
 }
 
 std::string shell_quoted(const std::string& file) {

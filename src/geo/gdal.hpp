@@ -51,6 +51,11 @@ struct Subdataset {
 [[nodiscard]] Result<GDALDatasetUniquePtr> open_dataset(const std::string& name, unsigned flags,
                                                         const std::string& kind);
 
+/// What a layer of a GeoPackage says of itself that convert_foreign() wrote from GeoJSON.
+inline constexpr const char* geojson_mark = "written again from GeoJSON";
+/// Whether a layer is or was GeoJSON, where WGS 84 may only mean that no reference system is stated.
+[[nodiscard]] bool was_geojson(GDALDataset& data, OGRLayer& layer);
+
 /// The file name for a shell, quoted where necessary.
 [[nodiscard]] std::string shell_quoted(const std::string& file);
 

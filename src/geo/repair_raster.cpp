@@ -124,6 +124,10 @@ Status repair_raster(const std::string& file, const std::string& to, const Mendi
         stated.AddString("-a_srs");
         stated.AddString(fmt::format("EPSG:{}", mending.epsg).c_str());
     }
+    if (mending.local) {
+        stated.AddString("-a_srs");
+        stated.AddString(Crs::own_metres().wkt.c_str());
+    }
     if (mending.nodata) {
         stated.AddString("-a_nodata");
         stated.AddString(fmt::format("{:.17g}", *mending.nodata).c_str());

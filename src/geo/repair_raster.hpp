@@ -27,11 +27,12 @@ struct RasterFacts {
 /// What is to be mended of a raster, each as its user states it.
 struct Mending {
     int epsg = 0;                           ///< the system that it is in; 0: as the file says
+    bool local = false;                     ///< or that its coordinates are metres of its own, as those of a flume
     bool metric = false;                    ///< bring it onto square cells of RasterFacts::metric_crs
     std::optional<double> metres_per_unit;  ///< of its values
     std::optional<double> nodata;           ///< the value that marks missing data
 
-    [[nodiscard]] bool any() const { return epsg != 0 || metric || metres_per_unit || nodata; }
+    [[nodiscard]] bool any() const { return epsg != 0 || local || metric || metres_per_unit || nodata; }
 };
 
 /// Writes the first band, mended, as a GeoTIFF. Errors: no such system, no position, more than `most_cells` cells,

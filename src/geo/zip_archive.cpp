@@ -79,6 +79,28 @@ Result<std::vector<Member>> members(const fs::path& archive, const ZipLimits& li
     return all;
 }
 
+/// Copies what is unpacked while it is read, and adds its bytes to `written`. `name`: of the archive, and of the file
+/// in it.
+Status copy_unpacked(VSILFILE* in, const GdalMessages& messages, const fs::path& to, const ZipLimits& limits,
+                     std::uint64_t& written, const std::string& archive, const std::string& name) {
+    std::ofstream out(to, std::ios::binary);
+    std::string block(block_size, '\0');
+    while (const std::size_t count = VSIFReadL(block.data(), 1, block.size(), in)) {
+        written += count;
+        if (written > limits.bytes) {
+            return Error{fmt::format("{}: holds more than {:.3g} GB unpacked", archive,
+                                     static_cast<double>(limits.bytes) / 1e9)};
+        }
+        if (!out.write(block.data(), static_cast<std::streamsize>(count))) break;
+    }
+    out.close();
+    if (!out) return Error{fmt::format("{}: cannot be written; is the disk full?", to.string())};
+    if (messages.has_failure()) {
+        return Error{fmt::format("{}: {}is damaged: {}", archive, name, messages.failure_or(""))};
+    }
+    return {};
+}
+
 /// Adds to `written` the bytes of one file.
 Status unpack_member(const fs::path& archive, const Member& member, const fs::path& folder, const ZipLimits& limits,
                      std::uint64_t& written) {
@@ -90,23 +112,8 @@ Status unpack_member(const fs::path& archive, const Member& member, const fs::pa
     const GdalMessages messages;
     const File in(VSIFOpenL(inside(archive, member.name).c_str(), "rb"));
     if (!in) return Error{fmt::format("{}: \"{}\" in it cannot be read", archive.string(), member.name)};
-    std::ofstream out(to, std::ios::binary);
-    std::string block(block_size, '\0');
-    while (const std::size_t count = VSIFReadL(block.data(), 1, block.size(), in.get())) {
-        written += count;
-        if (written > limits.bytes) {
-            return Error{fmt::format("{}: holds more than {:.3g} GB unpacked", archive.string(),
-                                     static_cast<double>(limits.bytes) / 1e9)};
-        }
-        if (!out.write(block.data(), static_cast<std::streamsize>(count))) break;
-    }
-    out.close();
-    if (!out) return Error{fmt::format("{}: cannot be written; is the disk full?", to.string())};
-    if (messages.has_failure()) {
-        return Error{
-            fmt::format("{}: \"{}\" in it is damaged: {}", archive.string(), member.name, messages.failure_or(""))};
-    }
-    return {};
+    return copy_unpacked(in.get(), messages, to, limits, written, archive.string(),
+                         fmt::format("\"{}\" in it ", member.name));
 }
 
 Status pack(VSILFILE* out, const ZipEntry& entry) {
@@ -125,6 +132,22 @@ Status pack(VSILFILE* out, const ZipEntry& entry) {
 }
 
 }  // namespace
+
+Status unpack_gzip(const fs::path& file, const fs::path& to, const ZipLimits& limits) {
+    prepare_gdal();
+    const auto unpack = [&]() -> Status {
+        const GdalMessages messages;
+        const File in(VSIFOpenL(("/vsigzip/" + fs::absolute(file).string()).c_str(), "rb"));
+        if (!in) return Error{file.string() + ": is not a gzip file, or it is damaged"};
+        std::uint64_t written = 0;
+        TALUS_TRY(copy_unpacked(in.get(), messages, to, limits, written, file.string(), ""));
+        return written > 0 ? Status() : Status(Error{file.string() + ": is damaged, or there is nothing in it"});
+    };
+    Status unpacked = unpack();
+    std::error_code ignored;
+    if (!unpacked) fs::remove(to, ignored);
+    return unpacked;
+}
 
 Status unpack_zip(const fs::path& archive, const fs::path& folder, const ZipLimits& limits) {
     prepare_gdal();

@@ -21,6 +21,10 @@ struct ZipLimits {
 [[nodiscard]] Status unpack_zip(const std::filesystem::path& archive, const std::filesystem::path& folder,
                                 const ZipLimits& limits = {});
 
+/// Unpacks a single file that gzip packed, `file`, as `to`, in a folder that is there. Errors: as of an archive.
+[[nodiscard]] Status unpack_gzip(const std::filesystem::path& file, const std::filesystem::path& to,
+                                 const ZipLimits& limits = {});
+
 /// A file to pack.
 struct ZipEntry {
     std::string name;            ///< in the archive, "data/terrain.tif"

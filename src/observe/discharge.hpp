@@ -95,6 +95,11 @@ class GridSections {
     void after_step(const depth::Solver& solver);
     [[nodiscard]] std::vector<DischargeRecord> records(double time) const { return recorder_.records(time); }
 
+    template <class Archive>
+    void keep(Archive& archive) {
+        archive(recorder_);
+    }
+
   private:
     struct Crossing {
         std::size_t section = 0;

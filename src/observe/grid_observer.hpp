@@ -61,6 +61,23 @@ class GridObserver {
     /// The complete results, with the debris where it is as deposit.
     [[nodiscard]] Observation finish(const depth::Solver& solver, const sim::Ground& ground, double held) const;
 
+    /// All that it has measured, of the same run.
+    template <class Archive>
+    void keep(Archive& archive) {
+        const std::size_t cells = released_.values.size();
+        for (std::vector<float>* map : {&peak_depth_.values, &peak_speed_.values, &arrival_time_.values,
+                                        &arrival_speed_.values, &arrival_fastest_, &released_.values}) {
+            archive(*map);
+            if constexpr (Archive::reading) {
+                if (map->size() != cells) return archive.fail();
+            }
+        }
+        archive(structures_, gauges_, sections_, energy_, timeseries_, volume_released_, volume_entrained_, front_);
+        if constexpr (Archive::reading) {
+            if (timeseries_.empty()) archive.fail();  // it has a row from the beginning on
+        }
+    }
+
   private:
     void measure_cells(const depth::Solver& solver);
     /// The debris around a cell that it just arrived in.

@@ -42,6 +42,17 @@ class GridStructures {
     /// Including the debris that barriers retain now.
     [[nodiscard]] std::vector<BuildingImpact> impacts(const depth::Solver& solver) const;
 
+    /// The measurements of the same structures.
+    template <class Archive>
+    void keep(Archive& archive) {
+        for (Barrier& barrier : barriers_) archive(barrier.over, barrier.through);
+        const std::size_t structures = impacts_.size(), slots = sums_.size();
+        archive(impacts_, now_, sums_);
+        if constexpr (Archive::reading) {
+            if (impacts_.size() != structures || now_.size() != structures || sums_.size() != slots) archive.fail();
+        }
+    }
+
   private:
     struct Cell {
         int column, row;

@@ -335,6 +335,10 @@ const std::vector<GaugeRecord>& Observer::gauges() const {
     return parts_->gauges.records();
 }
 
+std::vector<DischargeRecord> Observer::cross_sections(double time) const {
+    return parts_->sections.records(time);
+}
+
 const terrain::FlowPath& Observer::flow_path() const {
     return parts_->front.flow_path();
 }

@@ -77,6 +77,8 @@ class Observer final : public sim::StepWatcher {
     [[nodiscard]] const std::vector<BuildingImpact>& impacts() const;  ///< as in Ground::buildings
     [[nodiscard]] const MapAccumulator& maps() const;
     [[nodiscard]] const std::vector<GaugeRecord>& gauges() const;
+    /// With a row for what is left of an interval at `time`, s: now.
+    [[nodiscard]] std::vector<DischargeRecord> cross_sections(double time) const;
     [[nodiscard]] const terrain::FlowPath& flow_path() const;
 
     /// Only what says whether the run can be relied on: peak maps, thickness, compression, energy, and a row of the

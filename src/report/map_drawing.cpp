@@ -81,7 +81,7 @@ void draw_contour_label(Svg& svg, const MapFrame& frame, const geo::Contour& con
     }
 }
 
-/// The name of a building or gauge below it, centred.
+/// The name of a building, gauge or cross-section below it, centred.
 struct Label {
     int rank;  ///< its class: where two names would overlap, that of the higher class is kept
     double x, y;
@@ -164,6 +164,27 @@ void draw_gauges(Svg& svg, const scene::Scene& scene, const MapFrame& frame, std
     }
 }
 
+/// Halfway along a line.
+PlanPoint middle_of(const std::vector<PlanPoint>& line) {
+    double left = 0;
+    const auto length = [&](std::size_t k) { return std::hypot(line[k].x - line[k - 1].x, line[k].y - line[k - 1].y); };
+    for (std::size_t k = 1; k < line.size(); ++k) left += length(k) / 2;
+    std::size_t k = 1;
+    for (; k + 1 < line.size() && length(k) < left; ++k) left -= length(k);
+    const double share = left / length(k);
+    return {line[k - 1].x + share * (line[k].x - line[k - 1].x), line[k - 1].y + share * (line[k].y - line[k - 1].y)};
+}
+
+/// With the name at the middle of the line.
+void draw_cross_sections(Svg& svg, const scene::Scene& scene, const MapFrame& frame, std::vector<Label>& labels) {
+    for (const terrain::CrossSection& section : scene.cross_sections) {
+        draw_cased(svg, "cross-section", path_data(frame, section.line), section.name);
+        const PlanPoint middle = middle_of(section.line);
+        if (!frame.area.contains(middle)) continue;
+        labels.push_back({0, frame.x(middle.x), frame.y(middle.y) + 18, shortened(section.name, 24), "section-name"});
+    }
+}
+
 /// A line with an arrow in the direction of flow, or the outline of an area.
 void draw_inflow(Svg& svg, const terrain::Inflow& inflow, const MapFrame& frame) {
     std::string d;
@@ -239,6 +260,7 @@ void draw_vectors(Svg& svg, const scene::Scene& scene, const MapContent& content
     for (const terrain::Inflow& inflow : scene.inflows) draw_inflow(svg, inflow, frame);
     draw_flow_path(svg, scene, frame);
     draw_observations(svg, scene, frame);
+    draw_cross_sections(svg, scene, frame, labels);
     draw_gauges(svg, scene, frame, labels);
     if (content.zoom) draw_cased(svg, "zoom-boundary", polygon_data(frame, *content.zoom), "boundary of the zoom");
     draw_labels(svg, std::move(labels));
@@ -280,7 +302,8 @@ void draw_frame(Svg& svg, const scene::Scene& scene, const MapContent& content, 
 
 double key_height(const scene::Scene& scene, const MapContent& content) {
     const int rows = 2 + (scene.releases.empty() ? 0 : 1) + (scene.inflows.empty() ? 0 : 1) +
-                     (has_observations(scene) ? 1 : 0) + (scene.gauges.empty() ? 0 : 1) + (content.zoom ? 1 : 0) +
+                     (has_observations(scene) ? 1 : 0) + (scene.gauges.empty() ? 0 : 1) +
+                     (scene.cross_sections.empty() ? 0 : 1) + (content.zoom ? 1 : 0) +
                      (scene.buildings.empty() ? 0 : 5);
     return 20.0 * rows + 100;
 }
@@ -309,6 +332,7 @@ void draw_key(Svg& svg, const scene::Scene& scene, const MapContent& content, co
     }
     if (has_observations(scene)) row("Field observation", [&] { svg.path("observation", diamond(15, 10)); });
     if (!scene.gauges.empty()) row("Gauge", [&] { svg.path("gauge", disc(15, 10)); });
+    if (!scene.cross_sections.empty()) row("Cross-section", [&] { draw_cased(svg, "cross-section", "M2 10h26"); });
     if (content.zoom) row("Boundary of the zoom", [&] { draw_cased(svg, "zoom-boundary", "M2 3h26v13h-26Z"); });
     if (contour_interval > 0) {
         row(fmt::format("Contours every {} m", coordinate(contour_interval)),

@@ -19,6 +19,7 @@
 #include "run/depth_grid.hpp"
 #include "run/forecast.hpp"
 #include "run/grid_fault.hpp"
+#include "run/saved_state.hpp"
 #include "run/stop_rule.hpp"
 #include "run/threads.hpp"
 #include "sim/sources/seed.hpp"
@@ -127,6 +128,7 @@ class GridRun {
     }
     /// False: it is over; see stop_reason().
     bool advance() {
+        if (over()) return false;
         const params::SolverSpec& spec = scene_.spec.solver;
         keep_good_state();
         const auto start = std::chrono::steady_clock::now();
@@ -148,12 +150,31 @@ class GridRun {
         if (!trusted) {
             fault_ = record_grid_fault(ground_.bed, good_, solver_, trusted.error().message);
             stop_reason_ = trusted.error().message + fault_->sentence;
-        } else if (solver_.time() >= spec.end_time - 1e-9) {
-            stop_reason_ = with_what_moved(end_time_reason(spec), moving_now());
-        } else {
+        } else if (!over()) {
             judge();
         }
         return stop_reason_.empty();
+    }
+
+    /// Call it before a step after which state() may be asked for. solver.end_time cuts the last step short: a run to a
+    /// later end goes on from before that.
+    void keep_before_end() {
+        const double left = scene_.spec.solver.end_time - solver_.time();
+        if (solver_.next_step(scene_.spec.outputs.sample_interval) >= left - 1e-9) before_end_ = bytes();
+    }
+    [[nodiscard]] std::string state() {
+        const bool cut = reached_end() && !before_end_.empty();
+        return join_state(scene_, solver_.geometry().cell, solver_.time(), cut ? before_end_ : bytes());
+    }
+    /// Errors: as restore_state().
+    [[nodiscard]] Status restore(std::string_view state) {
+        TALUS_ASSIGN(const std::string_view saved, split_state(scene_, solver_.geometry().cell, state));
+        ArchiveReader archive(saved);
+        keep(archive);
+        TALUS_TRY(check_whole(archive));
+        good_ = GridState(solver_);
+        good_released_ = released_;
+        return {};
     }
 
     [[nodiscard]] double time() const { return solver_.time(); }
@@ -205,6 +226,26 @@ class GridRun {
     }
 
   private:
+    template <class Archive>
+    void keep(Archive& archive) {
+        archive(solver_, inflows_, bed_, observer_, stop_rule_, released_, held_, judged_, smallest_, largest_,
+                stop_reason_);
+        if constexpr (Archive::reading) {
+            if (released_ > scene_.releases.size()) archive.fail();
+        }
+    }
+    [[nodiscard]] std::string bytes() {
+        ArchiveWriter archive;
+        keep(archive);
+        return archive.take();
+    }
+    [[nodiscard]] bool reached_end() const { return solver_.time() >= scene_.spec.solver.end_time - 1e-9; }
+    [[nodiscard]] bool over() {
+        if (stop_reason_.empty() && reached_end()) {
+            stop_reason_ = with_what_moved(end_time_reason(scene_.spec.solver), moving_now());
+        }
+        return !stop_reason_.empty();
+    }
     void keep_good_state() {
         if (solver_.steps() % steps_between_good_grids != 0 && released_ == good_released_) return;
         good_ = GridState(solver_);
@@ -285,7 +326,7 @@ class GridRun {
     GridState good_;
     std::size_t good_released_ = 0;
     std::optional<FaultRecord> fault_;
-    std::string stop_reason_;
+    std::string stop_reason_, before_end_;  ///< before_end_: see keep_before_end(); empty: not near it
     StopRule stop_rule_;
     RunClock clock_;
     std::optional<sim::Model> sliding_;  ///< what the clock's blocks slide by; made when it is asked
@@ -299,20 +340,34 @@ Result<RunResult> run_depth_averaged(const scene::Scene& scene, const RunOptions
     return threads.execute([&]() -> Result<RunResult> {
         GridRun run(scene, inside);
         TALUS_TRY(run.check_inflows());
+        if (!options.start_from.empty()) {
+            const Status restored = run.restore(options.start_from);
+            if (!restored) return Error{options.start_from_file + ": " + restored.error().message};
+        }
+        StateClock state_clock(options);
+        const auto look_at_state = [&](bool at_end = false) {
+            if (state_clock.due(run.time(), at_end)) options.on_state(run.state(), run.time());
+        };
         const auto stopped = [&] { return options.stop_requested && options.stop_requested->load(); };
         FrameClock clock(scene, options);
         const auto show_frame = [&](bool at_end = false) {
             if (clock.due(run.time(), at_end)) options.on_frame(run.frame());
         };
         show_frame();
+        look_at_state();
         for (bool goes_on = true; goes_on && !stopped();) {
+            if (state_clock.wanted()) run.keep_before_end();
             goes_on = run.advance();
             if (options.on_grid_step) options.on_grid_step(run.solver());
             if (!goes_on) break;
+            look_at_state();
             show_frame();
             if (options.on_progress) options.on_progress(run.progress());
         }
-        if (!run.fault()) show_frame(true);
+        if (!run.fault()) {
+            look_at_state(true);
+            show_frame(true);
+        }
         return run.result(threads.count());
     });
 }

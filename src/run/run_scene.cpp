@@ -38,28 +38,6 @@ Progress progress_of(const scene::Scene& scene, const Run& run, const RunClock& 
     return progress;
 }
 
-/// Hands the state over once, when it is wanted.
-class StateSaver {
-  public:
-    StateSaver(const scene::Scene& scene, const RunOptions& options) : scene_(scene), options_(options) {}
-
-    /// Errors: as save_state().
-    Status look_at(Run& run, bool at_end = false) {
-        if (!options_.on_state || done_) return {};
-        const bool due = at_end || (options_.save_time && run.summary().time >= *options_.save_time - 1e-9);
-        if (!due || run.phase() == RunPhase::fault) return {};
-        TALUS_ASSIGN(const std::string state, save_state(scene_, run));
-        done_ = true;
-        options_.on_state(state, run.summary().time);
-        return {};
-    }
-
-  private:
-    const scene::Scene& scene_;
-    const RunOptions& options_;
-    bool done_ = false;
-};
-
 Result<RunResult> run_zoomed(const scene::Scene& scene, const RunOptions& options) {
     TALUS_ASSIGN(ZoomedScene zoomed, zoom_in(scene, options));
     TALUS_ASSIGN(RunResult result, run_scene(zoomed.scene, options));
@@ -70,6 +48,10 @@ Result<RunResult> run_zoomed(const scene::Scene& scene, const RunOptions& option
 }  // namespace
 
 Result<RunResult> run_scene(const scene::Scene& scene, const RunOptions& options) {
+    if (options.on_state || !options.start_from.empty()) {
+        const Status can = check_state_can_be_saved(scene);
+        if (!can) return Error{scene.file.string() + ": " + can.error().message};
+    }
     if (scene.spec.solver.model == params::ModelChoice::depth_averaged) return run_depth_averaged(scene, options);
     if (scene.zoom) return run_zoomed(scene, options);
     const auto started = Run::start(scene);
@@ -80,7 +62,14 @@ Result<RunResult> run_scene(const scene::Scene& scene, const RunOptions& options
         const Status restored = restore_state(scene, run, options.start_from);
         if (!restored) return Error{options.start_from_file + ": " + restored.error().message};
     }
-    StateSaver saver(scene, options);
+    StateClock state_clock(options);
+    const auto look_at_state = [&](bool at_end = false) -> Status {
+        const double time = run.summary().time;
+        if (!state_clock.due(time, at_end)) return {};
+        TALUS_ASSIGN(const std::string state, save_state(scene, run));
+        options.on_state(state, time);
+        return {};
+    };
     FrameClock clock(scene, options);
     const auto show_frame = [&](bool at_end = false) {
         if (!clock.due(run.summary().time, at_end)) return;
@@ -91,16 +80,16 @@ Result<RunResult> run_scene(const scene::Scene& scene, const RunOptions& options
     const auto stopped = [&] { return options.stop_requested && options.stop_requested->load(); };
     RunClock run_clock(scene.spec.solver);
     show_frame();
-    TALUS_TRY(saver.look_at(run));
+    TALUS_TRY(look_at_state());
     while (!stopped() && run.advance()) {
-        TALUS_TRY(saver.look_at(run));
+        TALUS_TRY(look_at_state());
         show_frame();
         if (!options.on_progress) continue;
         run_clock.tick(run.wall_time(), run.summary().time, [&] { return look_at(scene, run); });
         options.on_progress(progress_of(scene, run, run_clock));
     }
     if (run.phase() != RunPhase::fault) {
-        TALUS_TRY(saver.look_at(run, true));
+        TALUS_TRY(look_at_state(true));
         show_frame(true);
     }
     return run.result();

@@ -46,8 +46,9 @@ struct RunOptions {
     const std::atomic<bool>* stop_requested = nullptr;            ///< ends the run as interrupted
     std::string_view start_from = {};                             ///< a saved state (saved_state.hpp); empty: none
     std::string start_from_file = {};                             ///< where it was read, in errors
-    /// Called once with the state, and its time, after the step that reaches `save_time`, s; if none does, or it is
-    /// absent, at the end, unless that is a fault.
+    /// Called once with the state, and the time of the run then, after the step that reaches `save_time`, s; if none
+    /// does, or it is absent, at the end, unless that is a fault. Depth-averaged: at solver.end_time, which cuts the
+    /// last step short, before that step, so that a run to a later end is the one that was not interrupted.
     std::function<void(const std::string& state, double time)> on_state = {};
     std::optional<double> save_time = {};
 };
@@ -68,6 +69,25 @@ class FrameClock {
 
   private:
     double interval_, next_ = 0, latest_ = -1;
+    bool wanted_;
+};
+
+/// Says when the state is to be saved.
+class StateClock {
+  public:
+    explicit StateClock(const RunOptions& options) : time_(options.save_time), wanted_(options.on_state != nullptr) {}
+
+    /// Whether it still is to be, sooner or later.
+    [[nodiscard]] bool wanted() const { return wanted_; }
+    /// Whether it is due at `time`, s; true once.
+    [[nodiscard]] bool due(double time, bool at_end = false) {
+        if (!wanted_ || (!at_end && (!time_ || time < *time_ - 1e-9))) return false;
+        wanted_ = false;
+        return true;
+    }
+
+  private:
+    std::optional<double> time_;
     bool wanted_;
 };
 

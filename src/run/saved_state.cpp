@@ -11,6 +11,7 @@
 #include "core/hash.hpp"
 #include "core/try.hpp"
 #include "params/fields.hpp"
+#include "scene/depth_averaged_keys.hpp"
 
 namespace talus::run {
 namespace {
@@ -19,7 +20,7 @@ using StateJson = nlohmann::ordered_json;
 
 /// Whether a value has part in the debris or in what is measured of it. The others say when a run ends, how fast it is
 /// computed, or what is written about it.
-bool has_part(const params::Section& section, const params::Parameter& parameter) {
+bool has_part(const params::Section& section, const params::Parameter& parameter, params::ModelChoice model) {
     constexpr std::array<std::string_view, 15> sections = {
         "terrain",    "flow_path", "material", "solver",          "zone",    "release", "bed",          "inflow",
         "hydrograph", "buildings", "barrier",  "barrier_opening", "outputs", "gauge",   "cross_section"};
@@ -28,8 +29,10 @@ bool has_part(const params::Section& section, const params::Parameter& parameter
         "outputs.series_interval_s", "outputs.geoid_height_m", "outputs.peak_thickness", "outputs.intensity_guideline",
         "outputs.contours",          "outputs.tracks"};
     const std::string key = section.name + "." + parameter.key;
+    const bool of_the_other =
+        model == params::ModelChoice::particles ? scene::for_depth_averaged_only(key) : scene::for_particles_only(key);
     // What is in a file counts, not where it lies.
-    return parameter.kind != params::ParameterKind::path &&
+    return !of_the_other && parameter.kind != params::ParameterKind::path &&
            std::find(sections.begin(), sections.end(), section.name) != sections.end() &&
            std::find(other_keys.begin(), other_keys.end(), key) == other_keys.end();
 }
@@ -38,7 +41,8 @@ StateJson values_of(const scene::Scene& scene) {
     StateJson values = StateJson::object();
     for_each_value(scene.spec, [&](const params::Section& section, std::size_t index,
                                    const params::Parameter& parameter, const params::ParameterValue& value) {
-        if (has_part(section, parameter)) values[key_path(section, index, parameter)] = params::toml_text(value);
+        if (!has_part(section, parameter, scene.spec.solver.model)) return;
+        values[key_path(section, index, parameter)] = params::toml_text(value);
     });
     return values;
 }
@@ -74,13 +78,23 @@ std::string terrain_hash(const terrain::Terrain& terrain) {
     return to_hex(hash.value());
 }
 
+/// "particle_spacing_m", or that of cells.
+const char* resolution_key(const scene::Scene& scene) {
+    return scene.spec.solver.model == params::ModelChoice::particles ? "particle_spacing_m" : "grid_cell_m";
+}
+
 /// What a state is of.
-StateJson identity_of(const scene::Scene& scene, const Run& run) {
+StateJson identity_of(const scene::Scene& scene, double resolution) {
     return {{"version", TALUS_VERSION},
-            {"particle_spacing_m", run.model().particle_spacing},
+            {resolution_key(scene), resolution},
             {"terrain", terrain_hash(scene.terrain)},
             {"values", values_of(scene)},
             {"inputs", inputs_of(scene)}};
+}
+
+/// As text: what cannot be written in UTF-8 is the same in two states then.
+std::string text_of(const StateJson& head) {
+    return head.dump(-1, ' ', false, StateJson::error_handler_t::replace);
 }
 
 /// "material.friction_angle_deg = 20, here it is 25" of the first key that is not the same.
@@ -96,10 +110,15 @@ std::string first_difference(const StateJson& saved, const StateJson& here) {
 }
 
 /// What is different; empty: nothing.
-std::string difference(const StateJson& saved, const StateJson& here) {
+std::string difference(const StateJson& saved, const StateJson& here, const std::string& resolution) {
     const std::string version = text_of(saved, "version");
     if (version != TALUS_VERSION) {
         return fmt::format("was written by talus {}, this is talus {}", version, TALUS_VERSION);
+    }
+    // The model has keys of its own.
+    const std::string model = "solver.model", was = text_of(saved.at("values"), model);
+    if (was != text_of(here.at("values"), model)) {
+        return fmt::format("is of a scene with {} = {}, here it is {}", model, was, text_of(here.at("values"), model));
     }
     // Values first: the particle spacing follows from them.
     const std::string value = first_difference(saved.at("values"), here.at("values"));
@@ -111,17 +130,14 @@ std::string difference(const StateJson& saved, const StateJson& here) {
             return fmt::format("is of a scene with another input file for \"{}\"", item.key());
         }
     }
-    if (saved.at("particle_spacing_m") == here.at("particle_spacing_m")) return "";
-    return fmt::format("has particles {} m apart, here they are {} m apart", text_of(saved, "particle_spacing_m"),
-                       text_of(here, "particle_spacing_m"));
+    const std::string a = text_of(saved, resolution), b = text_of(here, resolution);
+    if (a == b) return "";
+    return fmt::format("is of a run with {} = {}, here it is {}", resolution, a, b);
 }
 
 }  // namespace
 
 Status check_state_can_be_saved(const scene::Scene& scene) {
-    if (scene.spec.solver.model != params::ModelChoice::particles) {
-        return Error{"it needs particles, and solver.model = \"depth_averaged\" has none"};
-    }
     if (scene.zoom) return Error{"a zoom is two runs, and has no single state"};
     return {};
 }
@@ -131,33 +147,44 @@ Status check_run_can_be_saved(const Run& run) {
     return Error{"a state can be saved, and a run start from one, with solver.backend = \"cpu\" only"};
 }
 
-Result<std::string> save_state(const scene::Scene& scene, Run& run) {
-    TALUS_TRY(check_run_can_be_saved(run));
-    if (run.phase() == RunPhase::fault) return Error{"the last step cannot be trusted, so its state is not saved"};
-    StateJson head = identity_of(scene, run);
-    head["time_s"] = run.summary().time;
-    ArchiveWriter archive;
-    run.save(archive);
-    return head.dump(-1, ' ', false, StateJson::error_handler_t::replace) + "\n" + archive.take();
+std::string join_state(const scene::Scene& scene, double resolution, double time, const std::string& bytes) {
+    StateJson head = identity_of(scene, resolution);
+    head["time_s"] = time;
+    return text_of(head) + "\n" + bytes;
 }
 
-Status restore_state(const scene::Scene& scene, Run& run, std::string_view state) {
-    TALUS_TRY(check_run_can_be_saved(run));
+Result<std::string_view> split_state(const scene::Scene& scene, double resolution, std::string_view state) {
     const std::size_t line = state.find('\n');
     try {
         const StateJson saved = StateJson::parse(state.substr(0, line));
-        // Through text, as the saved one went: what cannot be written in UTF-8 is the same then.
-        const StateJson here =
-            StateJson::parse(identity_of(scene, run).dump(-1, ' ', false, StateJson::error_handler_t::replace));
-        const std::string different = difference(saved, here);
+        const StateJson here = StateJson::parse(text_of(identity_of(scene, resolution)));
+        const std::string different = difference(saved, here, resolution_key(scene));
         if (!different.empty()) return Error{different};
     } catch (const std::exception&) {
         return Error{"is no state of a run"};
     }
-    ArchiveReader archive(line == std::string_view::npos ? std::string_view() : state.substr(line + 1));
+    return line == std::string_view::npos ? std::string_view() : state.substr(line + 1);
+}
+
+Status check_whole(const ArchiveReader& archive) {
+    if (archive.complete()) return {};
+    return Error{"is no state of a run, or of another build of the program"};
+}
+
+Result<std::string> save_state(const scene::Scene& scene, Run& run) {
+    TALUS_TRY(check_run_can_be_saved(run));
+    if (run.phase() == RunPhase::fault) return Error{"the last step cannot be trusted, so its state is not saved"};
+    ArchiveWriter archive;
+    run.save(archive);
+    return join_state(scene, run.model().particle_spacing, run.summary().time, archive.take());
+}
+
+Status restore_state(const scene::Scene& scene, Run& run, std::string_view state) {
+    TALUS_TRY(check_run_can_be_saved(run));
+    TALUS_ASSIGN(const std::string_view bytes, split_state(scene, run.model().particle_spacing, state));
+    ArchiveReader archive(bytes);
     run.restore(archive);
-    if (!archive.complete()) return Error{"is no state of a run, or of another build of the program"};
-    return {};
+    return check_whole(archive);
 }
 
 }  // namespace talus::run

@@ -101,6 +101,7 @@ Result<ZoomedScene> zoom_in(const scene::Scene& scene, const RunOptions& options
     std::optional<BoundaryFlow> flow;
     RunOptions recording = options;
     recording.on_frame = nullptr;
+    recording.on_state = nullptr;
     recording.on_grid_step = [&](const depth::Solver& solver) {
         if (!flow) flow.emplace(solver, *scene.zoom);
         flow->record(solver);

@@ -1,21 +1,17 @@
 #include "serve/draft.hpp"
 
 #include <algorithm>
-#include <cctype>
 #include <cmath>
 #include <limits>
 #include <system_error>
 #include <utility>
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
-#include "core/lower_case.hpp"
 #include "core/try.hpp"
 #include "geo/vector.hpp"
-#include "geo/zip_archive.hpp"
-#include "scene/bundle.hpp"
 #include "scene/check.hpp"
+#include "scene/load.hpp"
 #include "serve/json_text.hpp"
 #include "serve/library.hpp"
 
@@ -25,64 +21,7 @@ namespace {
 using nlohmann::json;
 namespace fs = std::filesystem;
 
-constexpr std::size_t longest_ending = 10;
-constexpr double largest_photo = 1e9;  // pixels; it is read at a fraction of its size
 constexpr int most_scenes_of_a_name = 1000;
-
-/// Files beside another one that say where it lies or hold its parts.
-constexpr std::array<std::string_view, 14> companions = {".shx", ".dbf",  ".prj", ".cpg", ".hdr", ".tfw", ".tifw",
-                                                         ".jgw", ".jpgw", ".pgw", ".wld", ".j2w", ".mtl", ".bin"};
-
-bool is_zip(const std::string& name) {
-    return lower_case(fs::path(name).extension().string()) == ".zip";
-}
-
-bool is_companion(const fs::path& file) {
-    const std::string ending = lower_case(file.extension().string());
-    return std::find(companions.begin(), companions.end(), ending) != companions.end();
-}
-
-/// Of all files below a folder.
-std::uint64_t bytes_in(const fs::path& folder) {
-    std::uint64_t bytes = 0;
-    std::error_code error;
-    for (fs::recursive_directory_iterator it(folder, error), end; !error && it != end; it.increment(error)) {
-        if (it->is_regular_file(error)) bytes += it->file_size(error);
-    }
-    return bytes;
-}
-
-std::vector<fs::path> files_in(const fs::path& folder) {
-    std::vector<fs::path> files;
-    std::error_code error;
-    for (fs::recursive_directory_iterator it(folder, error), end; !error && it != end; it.increment(error)) {
-        if (it->is_regular_file(error)) files.push_back(it->path());
-    }
-    std::sort(files.begin(), files.end());
-    return files;
-}
-
-/// The file of an archive that its user means: the only one that is no companion. What none of both kinds is, such as
-/// a description or a virtual raster beside a raster, is removed.
-Result<fs::path> only_file(const std::string& name, const fs::path& folder) {
-    constexpr std::array<std::string_view, 19> known = {
-        ".tif",  ".tiff", ".asc",  ".img", ".png",     ".jpg",      ".jpeg", ".jp2", ".shp", ".gpkg",
-        ".json", ".obj",  ".gltf", ".glb", ".geojson", ".cityjson", ".flt",  ".bil", ".hgt"};
-    std::vector<fs::path> found;
-    std::error_code ignored;
-    for (const fs::path& file : files_in(folder)) {
-        const std::string ending = lower_case(file.extension().string());
-        if (std::find(known.begin(), known.end(), ending) != known.end()) {
-            found.push_back(file);
-        } else if (!is_companion(file)) {
-            fs::remove(file, ignored);
-        }
-    }
-    if (found.size() == 1) return found.front();
-    if (found.empty()) return Error{name + ": there is no raster, no layer and no mesh in it"};
-    return Error{fmt::format("{}: there are {} files in it, {} and {}; pack one of them with its companions", name,
-                             found.size(), found[0].filename().string(), found[1].filename().string())};
-}
 
 /// Lowest and highest, m, by which a person sees whether feet were taken for metres.
 json elevation_range(const Grid<float>& grid) {
@@ -95,30 +34,7 @@ json elevation_range(const Grid<float>& grid) {
     return low <= high ? json{low, high} : json();
 }
 
-geo::ForeignWanted wanted_for(std::string_view role) {
-    geo::ForeignWanted wanted;
-    wanted.raster = role == "terrain" || role == "release";
-    wanted.vector = role == "release" || role == "buildings";
-    wanted.mesh = role == "buildings";
-    wanted.picture = role == "orthophoto";
-    wanted.purpose = role == "buildings"
-                         ? "holds no polygons; buildings are a GeoPackage, GeoJSON, zipped Shapefile, or a mesh"
-                     : role == "release" ? "is no raster of thickness and no layer of polygons"
-                                         : "is no raster; a GeoTIFF is one, and other formats that GDAL reads are";
-    return wanted;
-}
-
 }  // namespace
-
-std::string upload_name_of(const std::string& name) {
-    const std::string lower = lower_case(fs::path(name).filename().string());
-    std::string ending = lower.ends_with(".city.json") ? ".city.json" : fs::path(lower).extension().string();
-    const std::string stem = file_name_of(lower.substr(0, lower.size() - ending.size()));
-    ending = file_name_of(ending.substr(ending.empty() ? 0 : 1));
-    if (ending == "city-json") ending = "city.json";
-    if (ending.size() > longest_ending) ending.resize(longest_ending);
-    return (stem.empty() ? "file" : stem) + (ending.empty() ? "" : "." + ending);
-}
 
 Result<Draft> Draft::make(fs::path folder, const UploadLimits& limits) {
     std::error_code error;
@@ -141,58 +57,9 @@ Draft::Draft(Draft&& other) noexcept
       terrain_(std::move(other.terrain_)),
       problem_(std::move(other.problem_)) {}
 
-std::uint64_t Draft::bytes_left() const {
-    const std::uint64_t there = bytes_in(folder_);
-    return limits_.bytes > there ? limits_.bytes - there : 0;
-}
-
 const Draft::Upload* Draft::find(std::string_view role) const {
     const auto found = uploads_.find(role);
     return found == uploads_.end() ? nullptr : &found->second;
-}
-
-/// The file to read, somewhere below `to`.
-Result<fs::path> Draft::unpack(const std::string& name, const fs::path& upload, const fs::path& to) const {
-    if (is_zip(name)) {
-        TALUS_TRY(geo::unpack_zip(upload, to, {bytes_left(), limits_.files}));
-        return only_file(name, to);
-    }
-    if (is_companion(name) || lower_case(fs::path(name).extension().string()) == ".shp") {
-        return Error{name + ": is one of several files that belong together; pack all of them in one ZIP archive"};
-    }
-    std::error_code error;
-    const fs::path file = to / upload_name_of(name);
-    fs::create_directories(to, error);
-    if (!error) fs::rename(upload, file, error);
-    if (error) return Error{name + ": cannot be kept; is the disk full?"};
-    return file;
-}
-
-Result<Draft::Upload> Draft::convert(std::string_view role, const std::string& name, const fs::path& upload,
-                                     const fs::path& to, const geo::ForeignReader& reader) const {
-    Upload made{name, {}, 0, geo::FileKind::other};
-    const std::uint64_t most = bytes_left();
-    if (role == "bundle") {
-        TALUS_ASSIGN(auto unpacked, scene::unpack_bundle(upload, to, {most, limits_.files}, reader));
-        made.file = std::move(unpacked.scene);
-    } else {
-        const fs::path foreign = folder_ / "foreign";
-        TALUS_ASSIGN(const fs::path file, unpack(name, upload, foreign));
-        geo::ForeignWanted wanted = wanted_for(role);
-        wanted.cells = role == "orthophoto" ? largest_photo : limits_.cells;
-        std::error_code error;
-        fs::create_directories(to, error);
-        std::string stem = upload_name_of(file.filename().string());
-        stem.resize(std::min(stem.size(), stem.find('.')));
-        TALUS_ASSIGN(const auto converted, geo::convert_foreign(file, wanted, to / stem, reader));
-        made.file = converted.file;
-        made.kind = converted.kind;
-        fs::remove_all(foreign, error);
-    }
-    made.bytes = bytes_in(to);
-    if (made.bytes <= most) return Result<Upload>(std::move(made));
-    return Error{fmt::format("{}: unpacked, the files of this scene are longer than {:.4g} MB", name,
-                             static_cast<double>(limits_.bytes) / 1e6)};
 }
 
 Status Draft::take(std::string_view role, const std::string& name, const fs::path& upload,
@@ -261,6 +128,12 @@ void Draft::read_terrain() {
 Status Draft::mend(const geo::Mending& mending) {
     const Upload* upload = find("terrain");
     if (upload == nullptr) return Error{"there is no terrain yet"};
+    if (mending.local) {
+        const auto facts = geo::raster_facts(upload->file.string());
+        if (facts && !facts->crs.empty()) {
+            return Error{fmt::format("local = true; the terrain states a reference system, {}", facts->crs)};
+        }
+    }
     const fs::path mended = folder_ / "data" / "terrain.tif", fresh = folder_ / "fresh.tif";
     std::error_code error;
     if (mending.any()) {
@@ -298,6 +171,7 @@ json Draft::describe() const {
                    {"height_unit_m", facts.height_unit},
                    {"mending",
                     {{"epsg", mending_.epsg == 0 ? json() : json(mending_.epsg)},
+                     {"local", mending_.local},
                      {"metric", mending_.metric},
                      {"metres_per_unit", mending_.metres_per_unit ? json(*mending_.metres_per_unit) : json()},
                      {"nodata", mending_.nodata ? json(*mending_.nodata) : json()}}}};
@@ -346,6 +220,7 @@ Result<scene::NewScene> Draft::write_scene(const Wanted& wanted) {
     }
     scene::NewSceneOptions options;
     options.dem = dem();
+    options.local = terrain_->crs.local;
     options.title = wanted.title;
     options.folder = folder_;
     options.folder_exists = true;

@@ -49,8 +49,8 @@ class Draft {
     [[nodiscard]] std::uint64_t bytes_left() const;
 
     /// Takes a file that has come whole, `upload`, which is gone afterwards. `name`: as it was called; of an archive
-    /// the one file of the role's kind in it. Errors: nothing of that kind, beyond the limits, as convert_foreign; then
-    /// the former one stays.
+    /// the one file of the role's kind in it, of NAME.gz what is packed in it. Errors: nothing of that kind, beyond the
+    /// limits, as convert_foreign; then the former one stays.
     [[nodiscard]] Status take(std::string_view role, const std::string& name, const std::filesystem::path& upload,
                               const geo::ForeignReader& reader);
     void remove(std::string_view role);

@@ -51,11 +51,15 @@ params::Range any_number() {
 }
 
 Result<geo::Mending> read_mending(const Request& request) {
-    TALUS_ASSIGN(const json body, read_object(request, {"epsg", "metric", "metres_per_unit", "nodata"}));
+    TALUS_ASSIGN(const json body, read_object(request, {"epsg", "local", "metric", "metres_per_unit", "nodata"}));
     geo::Mending mending;
     TALUS_ASSIGN(const auto epsg, twin::read_number(body, "epsg", {1024, 999999, true, true}, ""));
     if (epsg && *epsg != static_cast<int>(*epsg)) return Error{fmt::format("epsg = {}; it is a whole number", *epsg)};
     mending.epsg = static_cast<int>(epsg.value_or(0));
+    mending.local = body.value("local", json(false)) == true;
+    if (mending.local && mending.epsg != 0) {
+        return Error{"epsg and local are given; coordinates are of a reference system, or local"};
+    }
     mending.metric = body.value("metric", json(false)) == true;
     TALUS_ASSIGN(mending.metres_per_unit, twin::read_number(body, "metres_per_unit", {1e-4, 1e4, true, true}, "m"));
     TALUS_ASSIGN(mending.nodata, twin::read_number(body, "nodata", {-1e39, 1e39, true, true}, ""));

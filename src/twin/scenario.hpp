@@ -145,6 +145,10 @@ class Scenario {
     [[nodiscard]] bool has_erosion() const;
     /// `{"figures": [...]}`: the key figures of the run so far, as in results.json.
     [[nodiscard]] std::function<nlohmann::json()> figures() const;
+    /// What results.json has of the run so far.
+    [[nodiscard]] nlohmann::json results_json() const;
+    /// `{"run_out": ..., "gauges": [...], "crs_wkt": ...}` of the run so far, as talus.h says.
+    [[nodiscard]] nlohmann::json measures_json() const;
     /// Writes the run so far as `talus run` would, into an existing empty folder.
     [[nodiscard]] std::function<Status(const std::filesystem::path& folder)> products() const;
 

@@ -1,6 +1,8 @@
-// Gauges of a scene: where they are, what they read, and their curves.
+// Gauges and cross-sections of a scene: where they are, what they read, and the curves of gauges.
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
+#include <utility>
 
 #include "core/number_or_null.hpp"
 #include "twin/gauges_json.hpp"
@@ -44,6 +46,24 @@ json reading_json(const GaugeRecord& record, const observe::FlowAt& now) {
             {"peak_speed_mps", record.peak_speed}};
 }
 
+/// As of a time, from the rows until then. A short rest of an interval says nothing about the discharge.
+json section_json(const observe::DischargeRecord& record, double until) {
+    double discharge = 0, peak = 0, passed = 0, before = 0;
+    for (const observe::DischargeSample& row : record.rows) {
+        if (row.time > until) break;
+        passed = row.passed;
+        if (row.time - before >= record.section.interval / 2) {
+            discharge = row.discharge;
+            if (std::abs(discharge) > std::abs(peak)) peak = discharge;
+        }
+        before = row.time;
+    }
+    return {{"name", record.section.name},
+            {"discharge_m3ps", discharge},
+            {"peak_discharge_m3ps", peak},
+            {"passed_m3", passed}};
+}
+
 }  // namespace
 
 json gauge_place(const terrain::Gauge& gauge) {
@@ -56,6 +76,16 @@ json gauge_place(const terrain::Gauge& gauge) {
 json gauge_places(const std::vector<terrain::Gauge>& gauges) {
     json places = json::array();
     for (const terrain::Gauge& gauge : gauges) places.push_back(gauge_place(gauge));
+    return places;
+}
+
+json section_places(const std::vector<terrain::CrossSection>& sections) {
+    json places = json::array();
+    for (const terrain::CrossSection& section : sections) {
+        json line = json::array();
+        for (const PlanPoint& p : section.line) line.push_back({p.x, p.y});
+        places.push_back({{"name", section.name}, {"line", std::move(line)}});
+    }
     return places;
 }
 
@@ -75,14 +105,17 @@ json gauge_curves(const std::vector<GaugeRecord>& records) {
 
 json Scenario::gauges_json(std::optional<double> time) const {
     const observe::Observer& observer = parts_->run->observer();
-    json readings = json::array();
+    json readings = json::array(), sections = json::array();
+    // A time is told with four decimals: the row of the moment that was meant may lie just after it.
+    const double now = parts_->run->summary().time, until = time.value_or(now) + 1e-4;
+    for (const observe::DischargeRecord& record : observer.cross_sections(now)) {
+        sections.push_back(section_json(record, until));
+    }
     for (const GaugeRecord& record : observer.gauges()) {
-        // A time is told with four decimals: the row of the moment that was meant may lie just after it.
-        const double until = time.value_or(0) + 1e-4;
         readings.push_back(time ? reading_json(record_until(record, until), flow_at(record, until))
                                 : reading_json(record, observer.maps().at(record.gauge.at)));
     }
-    return {{"gauges", readings}};
+    return {{"gauges", readings}, {"cross_sections", sections}};
 }
 
 }  // namespace talus::twin

@@ -206,6 +206,7 @@ json Scenario::scene_json() const {
             {"flow_path", flow_path_json(scene)},
             {"observations", observations},
             {"gauges", gauge_places(scene.gauges)},
+            {"cross_sections", section_places(scene.cross_sections)},
             {"parameters", live_parameters_json(scene, model, parts_->setup().material)},
             {"settings", settings_json(scene)},
             {"intensity", intensity_json(guideline_of(scene))}};

@@ -6,6 +6,8 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "core/angle.hpp"
+#include "core/number_or_null.hpp"
 #include "observe/erosion.hpp"
 #include "observe/map_names.hpp"
 #include "products/products.hpp"
@@ -105,6 +107,44 @@ std::function<json()> Scenario::figures() const {
     return [outcome = parts_->outcome()] {
         return json{{"figures", json::parse(report::key_figures(outcome.first, outcome.second).dump())}};
     };
+}
+
+json Scenario::results_json() const {
+    const auto [told, result] = parts_->outcome();
+    return json::parse(report::run_results(told, result, {}).dump());
+}
+
+json Scenario::measures_json() const {
+    const run::RunResult result = parts_->outcome().second;
+    const observe::RunOut& r = result.observation.run_out;
+    const auto number = [](double value) { return number_or_null<json>(value); };
+    json gauges = json::array();
+    for (const observe::GaugeRecord& record : result.observation.gauges) {
+        json time = json::array(), depth = json::array(), speed = json::array();
+        for (const observe::GaugeSample& row : record.rows) {
+            time.push_back(row.time);
+            depth.push_back(number(row.depth));
+            speed.push_back(number(row.speed));
+        }
+        gauges.push_back({{"name", record.gauge.name},
+                          {"x_m", record.gauge.at.x},
+                          {"y_m", record.gauge.at.y},
+                          {"time_s", std::move(time)},
+                          {"depth_m", std::move(depth)},
+                          {"speed_mps", std::move(speed)}});
+    }
+    return {{"run_out",
+             {{"along_flow_m", number(r.along_flow)},
+              {"straight_m", number(r.straight)},
+              {"at_least", r.at_least},
+              {"toe_x_m", number(r.toe.x)},
+              {"toe_y_m", number(r.toe.y)},
+              {"drop_m", number(r.drop)},
+              {"runout_angle_deg", number(r.runout_angle * degrees_per_radian)},
+              {"travel_angle_deg", number(r.travel_angle * degrees_per_radian)},
+              {"front_chainage_m", number(r.front_chainage)}}},
+            {"gauges", std::move(gauges)},
+            {"crs_wkt", parts_->scene->crs.wkt}};
 }
 
 std::function<Status(const std::filesystem::path&)> Scenario::products() const {

@@ -54,7 +54,8 @@ TEST_F(StateFile, ThatCannotBeUsedIsRefusedInOneSentence) {
     expect_refused({"--from-state", "none.state"}, "none.state: cannot be read");
     expect_refused({"--from-state", "end.state", "--set", "material.friction_coefficient=0.31"},
                    "end.state: is of a scene with material.friction_coefficient = ");
-    expect_refused({"--from-state", "end.state", "--model", "depth_averaged"}, "it needs particles");
+    expect_refused({"--from-state", "end.state", "--model", "depth_averaged"},
+                   "end.state: is of a scene with solver.model = \"particles\", here it is \"depth_averaged\"");
     expect_refused({"--from-state", "end.state", "--convergence"}, "--from-state is refused beside --convergence");
     std::string text = read_text(scene.input("end.state"));
     text[text.size() / 2] ^= 1;
@@ -62,7 +63,18 @@ TEST_F(StateFile, ThatCannotBeUsedIsRefusedInOneSentence) {
     expect_refused({"--from-state", "damaged.state"}, "damaged.state: is damaged");
     expect_refused({"--save-state", "nowhere/x.state"}, "is no folder");
     expect_refused({"-o", "first", "--force", "--save-state", "first/x.state"}, "in the result folder");
-    expect_refused({"--model", "depth_averaged", "--save-state", "x.state"}, "--save-state x.state is refused");
+}
+
+TEST_F(StateFile, OfTheDepthAveragedModelStartsARunThatEndsAsTheWholeOneDoes) {
+    ASSERT_EQ(run({"--model", "depth_averaged", "-o", "whole", "--save-state", "half.state@0.5"}).exit_code, 0);
+    const auto rest = run({"--model", "depth_averaged", "-o", "rest", "--from-state", "half.state"});
+    ASSERT_EQ(rest.exit_code, 0) << rest.error;
+    EXPECT_EQ(hash("rest"), hash("whole"));
+    for (const char* file : {"peak_depth.tif", "deposit_depth.tif", "front.csv", "buildings.csv"}) {
+        EXPECT_EQ(read_text(scene.input(std::string("rest/") + file)),
+                  read_text(scene.input(std::string("whole/") + file)))
+            << file;
+    }
 }
 
 }  // namespace

@@ -121,6 +121,27 @@ TEST(Maps, on_the_cells_of_the_caller_keep_their_size_and_their_debris) {
     }
 }
 
+TEST(Maps, have_no_holes_where_edges_of_the_callers_cells_run_through_the_middles_of_their_own) {
+    const Simulation simulation = Slope().open();
+    advance_to(simulation, 1);
+    const talus_map peak = map_of(simulation, "peak_depth");
+    // Every fifth edge in two of its own cells is in the middle of one, as far as decimals can say that.
+    const double own = peak.grid.cell, cell = 0.4 * own;
+    const talus_grid fine{peak.grid.x_min - 0.7 * own, peak.grid.y_min - 0.7 * own, cell, peak.grid.columns * 5 / 2 + 3,
+                          peak.grid.rows * 5 / 2 + 3};
+    const talus_map map = map_on(simulation, "peak_depth", fine);
+    for (int row = 0; row < fine.rows; ++row) {
+        for (int column = 0; column < fine.columns; ++column) {
+            const double x = (fine.x_min + (column + 0.5) * cell - peak.grid.x_min) / own;
+            const double y = (fine.y_min + (row + 0.5) * cell - peak.grid.y_min) / own;
+            if (!(x >= 0 && y >= 0 && x < peak.grid.columns && y < peak.grid.rows)) continue;
+            const float a = map.values[row * fine.columns + column],
+                        b = peak.values[static_cast<int>(y) * peak.grid.columns + static_cast<int>(x)];
+            ASSERT_TRUE(a == b || (std::isnan(a) && std::isnan(b))) << column << ", " << row;
+        }
+    }
+}
+
 TEST(Maps, refuse_names_and_cells_that_are_none) {
     const Simulation simulation = Slope().open();
     talus_error error = TALUS_SIZED(talus_error);

@@ -1,6 +1,7 @@
 // libtalus through its C interface.
 #include <cmath>
 #include <cstddef>
+#include <cstdlib>
 #include <dlfcn.h>
 #include <fstream>
 #include <iterator>
@@ -228,6 +229,28 @@ struct Counter {
         return self.calls++ == self.cancel_at ? 1 : 0;
     }
 };
+
+TEST(Library, says_what_a_run_has_measured_without_writing_files) {
+    const Simulation simulation = Slope().open();
+    advance_to(simulation, 3);
+    const auto read = [&](const char* name) {
+        const char* text = nullptr;
+        talus_error error = TALUS_SIZED(talus_error);
+        EXPECT_EQ(talus_get_json(simulation.get(), name, &text, &error), TALUS_OK) << error.text;
+        return std::string(text == nullptr ? "" : text);
+    };
+    const std::string measures = read("measures"), results = read("results");
+    const auto number = [&](const std::string& key) {
+        const std::size_t at = measures.find("\"" + key + "\":");
+        return at == std::string::npos ? std::nan("") : std::atof(measures.c_str() + at + key.size() + 3);
+    };
+    EXPECT_GT(number("along_flow_m"), 1);
+    EXPECT_GT(number("along_flow_m"), 0.9 * number("straight_m"));
+    EXPECT_GT(number("drop_m"), 1);
+    EXPECT_NE(measures.find("PROJCRS"), std::string::npos);
+    EXPECT_NE(measures.find("\"gauges\":[]"), std::string::npos);
+    EXPECT_NE(results.find("\"format\":\"talus results\""), std::string::npos);
+}
 
 TEST(Library, tells_how_far_a_call_is_and_ends_it_when_it_is_told_to) {
     const Simulation whole = Slope().open(), parted = Slope().open();

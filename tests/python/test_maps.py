@@ -1,5 +1,6 @@
 """Maps on fixed grids, in other packages' hands and as files."""
 
+import ctypes
 import dataclasses
 import pathlib
 import tempfile
@@ -8,6 +9,7 @@ import unittest
 import numpy as np
 
 import talus
+from talus import _library
 from test_talus import needs, open_slope
 
 
@@ -36,6 +38,33 @@ class GridTest(unittest.TestCase):
         coarse = deposit.on_grid(*where)
         np.testing.assert_array_equal(coarse.values[0], [3.5, 5.5, 7.5])
         self.assertAlmostEqual(float(coarse.values.sum()) * 16, float(np.nansum(deposit.values)) * 4, places=3)
+
+    def test_a_layer_of_one_depth_keeps_it_on_cells_of_any_size(self):
+        even = small("depth", values=np.full((40, 60), 1.5, np.float32))
+        for cell in (2, 3, 5, 7.5):
+            inner = even.on_grid((110, 60, 140, 90), cell).values
+            np.testing.assert_allclose(inner, 1.5, rtol=1e-6)
+        # Beyond its edge there is no debris: of the four cells that would be in one that straddles it, two have any.
+        np.testing.assert_allclose(even.on_grid((98, 60, 102, 64), 4).values, [[0.75]])
+
+    def test_is_that_of_the_library_on_the_same_cells(self):
+        on = _library.library.talus_get_map_on
+        on.argtypes = [ctypes.c_void_p, ctypes.c_char_p, ctypes.POINTER(_library.Grid), ctypes.POINTER(_library.Map), ctypes.c_void_p]
+        on.restype = ctypes.c_int
+        with open_slope(**{"outputs.map_cell_m": 1}) as simulation:
+            simulation.advance(2)
+            for name in talus.UNITS:
+                own = simulation.map(name)
+                west, south, east, north = own.extent
+                # Aligned and not; wholes, halves and other parts of its cells; within it and beyond its edges.
+                for cell, start in ((1, 0), (1, 0.25), (2, 0), (3, -1.25), (1.5, -4.5), (2.5, 0.3), (0.5, 0), (0.4, -0.7)):
+                    columns, rows = int((east - west) / cell) + 4, int((north - south) / cell) + 3
+                    x, y = west + start, south + start
+                    grid, found = _library.Grid(x, y, cell, columns, rows), _library.Map()
+                    self.assertEqual(on(simulation._handle, name.encode(), ctypes.byref(grid), ctypes.byref(found), None), 0)
+                    wanted = np.ctypeslib.as_array(found.values, (rows, columns))
+                    given = own.on_grid((x, y, x + columns * cell, y + rows * cell), cell).values
+                    np.testing.assert_allclose(given, wanted, rtol=1e-5, err_msg=f"{name} on cells of {cell} m from {start} m")
 
     def test_a_smaller_cell_has_the_value_of_the_one_it_lies_in(self):
         fine = small().on_grid((100, 50, 104, 52), 1).values

@@ -78,10 +78,11 @@ def write_slope():
     write_boxes("several.gpkg", "new", [(5, 10, 15, 20)])
 
 
-def write_boxes(file, name, places):
-    """A layer of polygons; the first of them is 2 m deep, the others are 1 m."""
-    reference = osr.SpatialReference()
-    reference.ImportFromEPSG(32650)
+def write_boxes(file, name, places, place=True):
+    """A layer of polygons; the first of them is 2 m deep, the others are 1 m. `place`: it states a reference system."""
+    reference = osr.SpatialReference() if place else None
+    if place:
+        reference.ImportFromEPSG(32650)
     there = (FOLDER / file).exists()
     data = ogr.Open(str(FOLDER / file), 1) if there else ogr.GetDriverByName("GPKG").CreateDataSource(str(FOLDER / file))
     layer = data.CreateLayer(name, reference, ogr.wkbPolygon)
@@ -291,6 +292,16 @@ class Plugin(unittest.TestCase):
         self.assertIn("buildings   1", run("check", {"SCENE": scene})["SUMMARY"])
         with self.assertRaisesRegex(QgsProcessingException, "already there"):
             run("newscene", {**layers(), "OUTPUT": str(FOLDER / "scene")})
+
+    def test_makes_a_scene_in_local_coordinates_where_that_is_said(self):
+        bare = FOLDER / "bare.tif"
+        gdal.Translate(str(bare), str(FOLDER / "dem.tif"), outputSRS="")
+        write_boxes("bare.gpkg", "scar", [(5, 10, 15, 20)], place=False)
+        flume = dict(layers(), TERRAIN=str(bare), RELEASE=str(FOLDER / "bare.gpkg"), BUILDINGS=None)
+        with self.assertRaisesRegex(QgsProcessingException, "states no coordinate reference system"):
+            run("newscene", {**flume, "OUTPUT": new_output("flume")})
+        scene = run("newscene", {**flume, "LOCAL": True, "OUTPUT": new_output("flume")})["SCENE"]
+        self.assertIn('crs = "local"', pathlib.Path(scene).read_text())
 
     def test_ensemble_opens_odds(self):
         project, output = QgsProject(), new_output("ensemble")

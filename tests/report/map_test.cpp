@@ -69,6 +69,24 @@ TEST(ReportMap, ShowsGaugesAndWithoutAPathNoObservations) {
     EXPECT_EQ(drawn().find("Field observation"), std::string::npos);
 }
 
+TEST(ReportMap, ShowsCrossSectionsWithTheirNames) {
+    Sample s;
+    const auto drawn = [&] {
+        const auto figures = map_figures(s.scene, map_content(s.scene, s.result));
+        return figures.ok() ? (*figures)["definitions"].get<std::string>() : figures.error().message;
+    };
+    EXPECT_EQ(drawn().find(">Cross-section<"), std::string::npos);
+    const PlanPoint at = s.scene.flow_path.point_at(60);
+    s.scene.cross_sections = {{"at the bridge", {{at.x, at.y - 10}, {at.x, at.y + 10}}},
+                              {"far away", {{900000, 900000}, {900010, 900000}}}};
+    const std::string map = drawn();
+    EXPECT_NE(map.find(">Cross-section<"), std::string::npos);
+    EXPECT_NE(map.find("class=\"cross-section\""), std::string::npos);
+    EXPECT_NE(map.find("class=\"section-name\""), std::string::npos);
+    EXPECT_NE(map.find(">at the bridge</text>"), std::string::npos);
+    EXPECT_EQ(map.find(">far away</text>"), std::string::npos) << "its middle is not on the map";
+}
+
 TEST(ReportMap, CallsImpactsByTheirPressure) {
     observe::BuildingImpact b;
     b.peak_impact_pressure = 50e3;

@@ -379,6 +379,30 @@ TEST(Report, RendersARunInWhichNothingMoved) {
     for (const char* nan : {">nan", " nan", "\"nan", "Lnan", "Mnan"}) EXPECT_FALSE(has(html, nan)) << nan;
 }
 
+TEST(Report, DrawsTheDischargeThroughCrossSectionsOverTime) {
+    Sample s;
+    EXPECT_FALSE(has(s.html(), "<h2>Cross-sections</h2>"));
+    observe::DischargeRecord bridge{.section = {"bridge", {{824200, 825550}, {824220, 825550}}}};
+    bridge.rows = {{1, 4, 4}, {2, 12.5, 16.5}};
+    bridge.peak_discharge = 12.5;
+    bridge.peak_time = 2;
+    bridge.passed = 16.5;
+    s.result.observation.cross_sections = {bridge, {.section = {"ford", {{824210, 825560}, {824230, 825560}}}}};
+    const std::string page = words_of(s.html());
+    for (const char* part : {"bridge", "ford", "12.50", "16.5", "nothing passed"}) EXPECT_TRUE(has(page, part)) << part;
+    const report::Json of_one = report::cross_sections({{"", &s.result}});
+    ASSERT_EQ(of_one["chart"]["plots"].size(), 2U) << "discharge and volume of the section that debris passed";
+    EXPECT_EQ(of_one["table"]["rows"].size(), 2U);
+    EXPECT_TRUE(of_one["not_drawn"].is_null());
+    const report::Json both = report::cross_sections({{"particles", &s.result}, {"depth-averaged", &s.result}});
+    EXPECT_EQ(both["table"]["rows"].size(), 4U);
+    EXPECT_EQ(both["table"]["rows"][1]["model"], "depth-averaged");
+    s.result.observation.cross_sections.assign(14, bridge);
+    EXPECT_EQ(report::cross_sections({{"", &s.result}})["not_drawn"], 2U);
+    s.result.observation.cross_sections = {{.section = {"ford", {{824210, 825560}, {824230, 825560}}}}};
+    EXPECT_TRUE(has(words_of(s.html()), "No debris passed a cross-section."));
+}
+
 TEST(Report, DrawsDepthAndSpeedAtGaugesOverTime) {
     Sample s;
     EXPECT_FALSE(has(s.html(), "<h2>Gauges</h2>"));

@@ -1,9 +1,9 @@
 // A flume in metres of its own, without a reference system.
 #include <fstream>
 
-#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "matchers.hpp"
 #include "scene/check.hpp"
 #include "scene/load.hpp"
 #include "scene/new_scene.hpp"
@@ -12,11 +12,6 @@
 
 namespace talus::scene {
 namespace {
-
-using testing::AllOf;
-using testing::Contains;
-using testing::HasSubstr;
-using testing::Not;
 
 TEST(OutputScale, IsThatOfTheFieldFromTwentyMetresOn) {
     for (const double length : {20.0, 84.0, 5000.0}) EXPECT_EQ(output_scale(length), 1) << length;

@@ -6,18 +6,13 @@
 #include <limits>
 
 #include <gdal_priv.h>
-#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "matchers.hpp"
 #include "scene_folder.hpp"
 
 namespace talus::scene {
 namespace {
-
-using testing::AllOf;
-using testing::Contains;
-using testing::HasSubstr;
-using testing::Not;
 
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 

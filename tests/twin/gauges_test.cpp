@@ -87,6 +87,29 @@ TEST(Gauges, are_empty_again_after_a_restart_and_in_a_new_scenario) {
     EXPECT_EQ(scenario->series_json()["gauges"]["time_s"], json::array({0.0}));
 }
 
+TEST(CrossSections, say_what_passes_now_and_as_of_a_time) {
+    scene::Scene scene = channel_scene();
+    scene.cross_sections = {{"across the channel", {{west + 45, south + 60}, {west + 45, south}}},
+                            {"on the bank", {{west + 60, south + 50}, {west + 60, south + 58}}}};
+    const auto scenario = open(std::move(scene));
+    EXPECT_EQ(scenario->scene_json()["cross_sections"][0],
+              (json{{"name", "across the channel"}, {"line", {{west + 45, south + 60}, {west + 45, south}}}}));
+    const json before = scenario->gauges_json()["cross_sections"];
+    ASSERT_EQ(before.size(), 2U);
+    EXPECT_EQ(before[0]["passed_m3"], 0);
+    run_until(*scenario, 6);
+    const json now = scenario->gauges_json()["cross_sections"];
+    EXPECT_NE(now[0]["passed_m3"].get<double>(), 0);
+    EXPECT_NE(now[0]["peak_discharge_m3ps"].get<double>(), 0);
+    EXPECT_EQ(
+        now[1],
+        (json{{"name", "on the bank"}, {"discharge_m3ps", 0.0}, {"peak_discharge_m3ps", 0.0}, {"passed_m3", 0.0}}));
+    EXPECT_EQ(scenario->gauges_json(0)["cross_sections"], before) << "as of the beginning";
+    const json soon = scenario->gauges_json(3)["cross_sections"][0];
+    EXPECT_LE(std::abs(soon["peak_discharge_m3ps"].get<double>()),
+              std::abs(now[0]["peak_discharge_m3ps"].get<double>()));
+}
+
 TEST(Gauges, change_nothing_of_the_run) {
     const auto with = open(gauged_scene()), without = open(channel_scene());
     run_until(*with, 3);

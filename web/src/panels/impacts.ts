@@ -9,7 +9,7 @@ import { pressures } from "../state/pressures";
 import { itemOf, lineOf, pointsOf } from "../state/shapes";
 import type { HouseColour, Twin } from "../state/twin";
 import { h } from "../ui/dom";
-import { gaugeTable } from "./gauges";
+import { gaugeTable, sectionTable } from "./gauges";
 
 interface Column<Row> { key: string; title: string; unit: string; value(row: Row): number | string | null; digits?: number }
 
@@ -170,6 +170,6 @@ export function impactsPanel(twin: Twin, stage: Stage): HTMLElement {
     houses.element.hidden = (impacts?.buildings.length ?? 0) === 0;
     colouring.value = twin.houseColour.value;
   });
-  return h("div", {}, then, none, barrierTitle, barriers.element, gaugeTable(twin, stage), h("div", { class: "row" }, h("h3", { class: "grow" }, "Buildings"), h("label", { class: "check" }, "Colour", colouring)),
+  return h("div", {}, then, none, barrierTitle, barriers.element, gaugeTable(twin, stage), sectionTable(twin, stage), h("div", { class: "row" }, h("h3", { class: "grow" }, "Buildings"), h("label", { class: "check" }, "Colour", colouring)),
     houses.element, measured, goneTitle, gone, h("h3", {}, "Intensity classes"), classes, h("p", { class: "hint" }, intensity.rule), h("p", { class: "hint" }, `Source: ${intensity.source}`));
 }

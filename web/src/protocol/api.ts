@@ -1,7 +1,7 @@
 // The HTTP half of docs/protocol.md.
 import { decodeFrame, type Frame, type ScenarioName } from "./frame";
 import { decodeGrid, type Grid } from "./grid";
-import type { Action, DepthAveragedComparison, Done, Ensemble, ExportFile, Figure, GaugeReading, Impacts, LayerName, NewScenario, ProbeSeries, Recording, SceneInfo, Series, Session, Share, WantedShare } from "./messages";
+import type { Action, DepthAveragedComparison, Done, Ensemble, ExportFile, Figure, GaugeReadings, Impacts, LayerName, NewScenario, ProbeSeries, Recording, SceneInfo, Series, Session, Share, WantedShare } from "./messages";
 import type { Checked, Draft, DraftRole, JobEstimate, JobForm, MendingOfTerrain, StartPage, ValidationCase, WantedJob, WantedScene } from "./start";
 
 /** The server's answer to a request that it refused. */
@@ -81,8 +81,8 @@ export class Api {
   series = (s: ScenarioName): Promise<Series> => this.json(`scenarios/${s}/series`);
   /** Now, or at a time of the recording. */
   impacts = (s: ScenarioName, time_s: number | null = null): Promise<Impacts> => this.json(`scenarios/${s}/impacts${at(time_s)}`);
-  gauges = async (s: ScenarioName, time_s: number | null = null): Promise<GaugeReading[]> =>
-    (await this.json<{ gauges: GaugeReading[] }>(`scenarios/${s}/gauges${at(time_s)}`)).gauges;
+  gauges = async (s: ScenarioName, time_s: number | null = null): Promise<GaugeReadings> =>
+    this.json<GaugeReadings>(`scenarios/${s}/gauges${at(time_s)}`);
   figures = async (s: ScenarioName): Promise<Figure[]> => (await this.json<{ figures: Figure[] }>(`scenarios/${s}/figures`)).figures;
   recording = (s: ScenarioName): Promise<Recording> => this.json(`scenarios/${s}/recording`);
   layer = async (s: ScenarioName, name: LayerName, time_s: number | null = null): Promise<Grid> =>

@@ -179,6 +179,14 @@ export interface GaugePlace {
   chainage_m: number | null;
 }
 
+/** A cross-section of the scene file. */
+export interface SectionPlace {
+  /** For people. */
+  name: string;
+  /** What passes from its left to its right counts as positive. */
+  line: Point[];
+}
+
 /** A value of a map of classes. */
 export interface Category {
   /** For people. */
@@ -261,6 +269,8 @@ export interface SceneInfo {
   observations: Observation[];
   /** As the scene file has them. */
   gauges: GaugePlace[];
+  /** As the scene file has them. */
+  cross_sections: SectionPlace[];
   /** The live ones. */
   parameters: Parameter[];
   /** Keys of the scene that others need, such as solver.internal_friction, with their values. */
@@ -663,9 +673,23 @@ export interface GaugeReading {
   peak_speed_mps: number;
 }
 
+/** What passes a cross-section. */
+export interface SectionReading {
+  /** Of the cross-section. */
+  name: string;
+  /** Mean over the last interval. */
+  discharge_m3ps: number;
+  /** The greatest so far, in either direction. */
+  peak_discharge_m3ps: number;
+  /** So far, less what came back. */
+  passed_m3: number;
+}
+
 export interface GaugeReadings {
   /** In the scene's order. */
   gauges: GaugeReading[];
+  /** In the scene's order. */
+  cross_sections: SectionReading[];
 }
 
 /** The front over chainage. */

@@ -102,6 +102,8 @@ export interface DraftFile {
 export interface MendingOfTerrain {
   /** Code of the reference system that it is in. */
   epsg: number | null;
+  /** It states none, and its coordinates are metres of its own, as those of a flume. */
+  local: boolean;
   /** Bring it onto square cells of a metric system. */
   metric: boolean;
   /** Of its elevations. */

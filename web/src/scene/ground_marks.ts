@@ -1,6 +1,6 @@
-// Display of zones, beds and inflows: tints with patterns, outlines, arrows, names.
+// Display of zones, beds, inflows and cross-sections: tints with patterns, outlines, arrows, names.
 import type { Line2 } from "three/examples/jsm/lines/Line2.js";
-import type { Point, Setup } from "../protocol/messages";
+import type { Point, SectionPlace, Setup } from "../protocol/messages";
 import { quantity } from "../state/format";
 import { bedNote, zoneNote } from "../state/ground";
 import { arrowAlong, arrowsOf, inflowNote } from "../state/inflows";
@@ -10,7 +10,7 @@ import type { Label } from "./labels";
 import { pixelLine, type Look } from "./lines";
 import type { Relief } from "./relief";
 
-const colours = { zone: "#00694f", bed: "#7a3d8f", inflow: "#0a5fae" };
+const colours = { zone: "#00694f", bed: "#7a3d8f", inflow: "#0a5fae", section: "#1d6fb8" };
 
 /** Lines of a wide area are farther apart: seen from a distance they would merge into grey. */
 const gapOf = (polygon: readonly (readonly Point[])[]): number => Math.min(25, Math.max(3, Math.sqrt(footprintArea([polygon])) / 16));
@@ -58,3 +58,13 @@ export function groundLabels(setup: Setup, relief: Relief, selected: string | nu
   for (const inflow of setup.inflows) put(inflow.id, inflow.line ?? inflow.polygons[0]?.[0] ?? [], `${inflow.name}, ${inflow.in_force ? quantity(inflow.volume_m3, "m3") : inflowNote(inflow)}`, "inflow", 7);
   return labels;
 }
+
+/** Not of the setup: those of the scene file, in every scenario. */
+export const sectionLines = (sections: readonly SectionPlace[], relief: Relief): Line2[] =>
+  sections.map(({ line }) => pixelLine(relief.drape(line, 0.4), { colour: colours.section, width_px: 2.5 }));
+
+export const sectionLabels = (sections: readonly SectionPlace[], relief: Relief): Label[] =>
+  sections.map(({ name, line }) => {
+    const [x, y] = middle(line);
+    return { at: relief.local(x, y, 1), text: name, kind: "section", priority: 5 };
+  });

@@ -11,7 +11,7 @@ import { DepthField } from "./depth_field";
 import { DrawnAreas, type Area } from "./drawn_areas";
 import { FrameClock } from "./frame_clock";
 import { Ground } from "./ground";
-import { groundAreas, groundLabels, groundLines } from "./ground_marks";
+import { groundAreas, groundLabels, groundLines, sectionLabels, sectionLines } from "./ground_marks";
 import { Labels, type Label } from "./labels";
 import type { Daylight } from "./natural/daylight";
 import { Houses } from "./natural/houses";
@@ -171,6 +171,7 @@ export class ScenarioView {
       }
     }
     if (this.setup) for (const line of groundLines(this.setup, this.relief)) this.outlines.add(line);
+    for (const line of sectionLines(this.shared.scene.cross_sections, this.relief)) this.outlines.add(line);
   }
 
   /**
@@ -238,6 +239,7 @@ export class ScenarioView {
       for (const gauge of this.setup?.gauges ?? []) {
         labels.push({ at: relief.local(gauge.x_m, gauge.y_m, 0.5), text: gauge.name, kind: "gauge", priority: 5, below: true });
       }
+      labels.push(...sectionLabels(scene.cross_sections, relief));
       for (const release of this.setup?.releases ?? []) {
         if (release.id === this.selected) continue;
         const ring = release.polygons[0] ?? [];

@@ -36,7 +36,7 @@ export class NewScene {
   private byVolume = false;
   /** Its user has said what the unit of the heights is, so that the file's own is no longer proposed. */
   private heightsChosen = false;
-  private mending: MendingOfTerrain = { epsg: null, metric: false, metres_per_unit: null, nodata: null };
+  private mending: MendingOfTerrain = { epsg: null, local: false, metric: false, metres_per_unit: null, nodata: null };
   /** Counts what was asked, so that an answer to an earlier state is not shown. */
   private asked = 0;
   private timer = 0;
@@ -86,7 +86,7 @@ export class NewScene {
     if (this.draft && file.size > this.draft.bytes_left) return this.complain(`${file.name} has ${bytes(file.size)}; ${bytes(this.draft.bytes_left)} are left of the limit. Crop it to the area of interest.`);
     if (file.size === 0) return this.complain(`${file.name} is empty.`);
     if (role === "terrain") this.heightsChosen = false;
-    if (role === "terrain") this.mending = { epsg: null, metric: false, metres_per_unit: null, nodata: null };
+    if (role === "terrain") this.mending = { epsg: null, local: false, metric: false, metres_per_unit: null, nodata: null };
     await this.change("Uploading… 0 %", () => this.api.uploadToDraft(this.id, role, file, (share) => this.tell(share < 1 ? `Uploading… ${Math.floor(100 * share)} %` : `Reading ${file.name}…`)));
   }
   private tell(what: string): void {
@@ -103,7 +103,7 @@ export class NewScene {
       const draft = await ask();
       this.draft = draft;
       --this.busy;
-      if (this.title.value === "" && draft.files.terrain) this.title.value = draft.files.terrain.name.replace(/\.[^.]*$/, "").replace(/[_-]+/g, " ");
+      if (this.title.value === "" && draft.files.terrain) this.title.value = draft.files.terrain.name.replace(/\.gz$/i, "").replace(/\.[^.]*$/, "").replace(/[_-]+/g, " ");
       this.showFiles(draft);
       if (JSON.stringify(before) !== JSON.stringify(draft.terrain)) await this.showMap(draft);
       this.later(0);
@@ -155,7 +155,8 @@ export class NewScene {
     } }, ...units.map(([value, text]) => h("option", { value: value === null ? "" : String(value), selected: value === proposed }, text)));
     const unitName = units.find(([value]) => value === proposed)?.[1] ?? "";
     const rows = [
-      terrain.crs === "" || this.mending.epsg !== null ? h("div", { class: "row" }, h("span", {}, "Reference system, EPSG:"), epsg, button("Apply", { class: "small", onclick: () => mend({ epsg: numberOf(epsg) }) })) : null,
+      terrain.crs === "" || this.mending.epsg !== null || this.mending.local ? h("div", { class: "row wrap" }, h("span", {}, "Reference system, EPSG:"), epsg, button("Apply", { class: "small", onclick: () => mend({ epsg: numberOf(epsg), local: false }) }),
+        this.mending.local ? null : button("None: local coordinates in metres", { class: "small", title: "For a laboratory model, such as a flume, whose place on the globe does not matter", onclick: () => mend({ epsg: null, local: true }) })) : null,
       this.mending.metric ? button("Undo conversion", { class: "small", onclick: () => mend({ metric: false }) })
         : terrain.problem !== null && terrain.metric_crs !== "" ? button(`Convert to square cells in metres (${terrain.metric_crs})`, { class: "small", onclick: () => mend({ metric: true, metres_per_unit: proposed }) }) : null,
       proposed !== factor ? h("div", { class: "row wrap" }, h("span", {}, `The file suggests heights in ${unitName}.`), button(`Convert heights from ${unitName}`, { class: "small", onclick: () => mend({ metres_per_unit: proposed }) })) : null,

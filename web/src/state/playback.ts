@@ -66,13 +66,12 @@ export class Playback {
       const time = this.wanted;
       this.wanted = null;
       const fine = await this.twin.attempt(async () => {
-        const { api, cells } = this.twin;
+        const { api } = this.twin;
         await Promise.all(this.twin.shown.value.map(async (name: ScenarioName) => {
-          const [frame, [impacts, gauges]] = await Promise.all([api.frame(name, time), this.twin.readings(name, time)]);
+          const [frame, readings] = await Promise.all([api.frame(name, time), this.twin.readings(name, time)]);
           if (this.twin.replay_s.value === null) return;
           this.twin.showFrame(frame);
-          cells[name].impacts.value = impacts;
-          cells[name].gauges.value = gauges;
+          this.twin.showReadings(name, readings);
           if (name === this.twin.edited.value) this.twin.replayOvercompressed.value = (frame.flags & tooCompressed) !== 0;
         }));
       });

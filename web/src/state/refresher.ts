@@ -1,4 +1,4 @@
-// Polls data that the server does not push: series, impacts and gauges, during the run and once after it stops.
+// Polls data that the server does not push: series, impacts, gauges and cross-sections, during the run and once after it stops.
 import { scenarioNames, type ScenarioName } from "../protocol/frame";
 import type { Twin } from "./twin";
 
@@ -36,11 +36,10 @@ export class Refresher {
     names.forEach((name) => this.stale.delete(name));
     try {
       await Promise.all(names.map(async (name) => {
-        const [series, [impacts, gauges]] = await Promise.all([twin.api.series(name), twin.readings(name, null)]);
+        const [series, readings] = await Promise.all([twin.api.series(name), twin.readings(name, null)]);
         twin.cells[name].series.value = series;
         if (twin.replay_s.value !== null) return;
-        twin.cells[name].impacts.value = impacts;
-        twin.cells[name].gauges.value = gauges;
+        twin.showReadings(name, readings);
       }));
       this.also();
     } catch (error) {

@@ -3,7 +3,7 @@ import { Api, Refused } from "../protocol/api";
 import { scenarioNames, type Frame, type ScenarioName } from "../protocol/frame";
 import { Live, type Connection } from "../protocol/live";
 import type { ShownLayer } from "../protocol/layers";
-import type { Action, Alerts, CalibrationStatus, DepthAveragedStatus, Done, Ensemble, GaugeReading, Impacts, Person, Place, Point, ProbeSeries, SceneInfo, Series, ServerMessage, Session, Setup, State, You } from "../protocol/messages";
+import type { Action, Alerts, CalibrationStatus, DepthAveragedStatus, Done, Ensemble, GaugeReading, GaugeReadings, Impacts, Person, Place, Point, ProbeSeries, SceneInfo, SectionReading, Series, ServerMessage, Session, Setup, State, You } from "../protocol/messages";
 import { usualMoment, type Moment } from "../scene/natural/sun";
 import type { StartPage } from "../protocol/start";
 import type { Relief } from "../scene/relief";
@@ -23,6 +23,7 @@ export interface ScenarioCells {
   series: Cell<Series | null>;
   impacts: Cell<Impacts | null>;
   gauges: Cell<readonly GaugeReading[] | null>;
+  sections: Cell<readonly SectionReading[] | null>;
   /** Of the depth-averaged model of its setup; null, or off: not computed. */
   depthAveraged: Cell<DepthAveragedStatus | null>;
 }
@@ -195,9 +196,16 @@ export class Twin {
   get running(): boolean {
     return this.shown.value.some((name) => this.cells[name].state.value?.status === "running");
   }
-  /** What structures and gauges have met until a time, or until now; a scenario without gauges is not asked about them. */
-  readings(s: ScenarioName, time_s: number | null): Promise<[Impacts, readonly GaugeReading[]]> {
-    return Promise.all([this.api.impacts(s, time_s), (this.cells[s].setup.value?.gauges.length ?? 0) > 0 ? this.api.gauges(s, time_s) : []]);
+  /** What structures, gauges and cross-sections have met until a time, or until now; a scenario without the latter two is not asked about them. */
+  readings(s: ScenarioName, time_s: number | null): Promise<[Impacts, GaugeReadings]> {
+    const measures = (this.cells[s].setup.value?.gauges.length ?? 0) > 0 || this.scene.cross_sections.length > 0;
+    return Promise.all([this.api.impacts(s, time_s), measures ? this.api.gauges(s, time_s) : { gauges: [], cross_sections: [] }]);
+  }
+  showReadings(s: ScenarioName, [impacts, { gauges, cross_sections }]: readonly [Impacts, GaugeReadings]): void {
+    const cells = this.cells[s];
+    cells.impacts.value = impacts;
+    cells.gauges.value = gauges;
+    cells.sections.value = cross_sections;
   }
   /** The state at the displayed time. */
   shownState(scenario: ScenarioName = this.edited.value): State | null {
@@ -363,5 +371,5 @@ export class Twin {
 
 function emptyCells(): ScenarioCells {
   return { state: new Cell<State | null>(null), setup: new Cell<Setup | null>(null), series: new Cell<Series | null>(null), impacts: new Cell<Impacts | null>(null),
-    gauges: new Cell<readonly GaugeReading[] | null>(null), depthAveraged: new Cell<DepthAveragedStatus | null>(null) };
+    gauges: new Cell<readonly GaugeReading[] | null>(null), sections: new Cell<readonly SectionReading[] | null>(null), depthAveraged: new Cell<DepthAveragedStatus | null>(null) };
 }
