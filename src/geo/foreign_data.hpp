@@ -13,6 +13,8 @@
 #include <ogr_geometry.h>
 
 #include "core/result.hpp"
+#include "geo/foreign.hpp"
+#include "geo/layer_style.hpp"
 #include "geo/mesh.hpp"
 #include "geo/vector.hpp"
 
@@ -41,6 +43,7 @@ struct ForeignRaster {
 struct ForeignLayer {
     std::string name, crs;
     std::vector<Field> fields;
+    LayerSymbols symbols;  ///< by the file's own style; empty: none was asked for, or there is none
 };
 
 /// A mesh as arrays.
@@ -83,8 +86,9 @@ class ForeignOutput {
     bool good_ = true;
 };
 
-/// Writes the canonical file from what the child handed over. `kind` and `parts` are set.
+/// Writes the canonical file from what the child handed over. `file`, `parts` and `layers` are set.
 [[nodiscard]] Status write_again(std::FILE* in, std::uint64_t bytes, const std::string& stem, double most_cells,
-                                 int most_bands, std::string& file, std::vector<std::string>& parts);
+                                 int most_bands, std::string& file, std::vector<std::string>& parts,
+                                 std::vector<LayerSymbols>& layers);
 
 }  // namespace talus::geo

@@ -273,6 +273,7 @@ Result<ForeignLayer> read_layer(const json& written) {
     layer.name = text_in(written, "name").substr(0, 200);
     layer.crs = text_in(written, "crs");
     const json fields = written.value("fields", json());
+    layer.symbols = symbols_of(written.value("symbols", json()));
     if (layer.name.empty() || !fields.is_array() || fields.size() > most_fields) return malformed;
     for (const json& field : fields) {
         if (!field.is_object()) return malformed;
@@ -324,7 +325,7 @@ Status write_layer(Input& in, GDALDataset& data, const ForeignLayer& from, std::
     }
 }
 
-Status write_layers(Input& in, const json& head, const std::string& file) {
+Status write_layers(Input& in, const json& head, const std::string& file, std::vector<LayerSymbols>& symbols) {
     if (!head.is_array() || head.empty() || head.size() > most_layers) return malformed;
     const GdalMessages messages;
     const auto failed = [&] { return Error{"cannot be kept: " + messages.failure_or("is the disk full?")}; };
@@ -335,6 +336,7 @@ Status write_layers(Input& in, const json& head, const std::string& file) {
     for (const json& written : head) {
         TALUS_ASSIGN(const ForeignLayer layer, read_layer(written));
         TALUS_TRY(write_layer(in, *data, layer, names, messages));
+        symbols.push_back(layer.symbols);
     }
     if (in.left() != 0) return malformed;
     if (data->CommitTransaction() != OGRERR_NONE) return failed();
@@ -361,7 +363,7 @@ Status write_mesh(Input& in, const json& parts_read, const std::string& file, st
 }  // namespace
 
 Status write_again(std::FILE* in, std::uint64_t bytes, const std::string& stem, double most_cells, int most_bands,
-                   std::string& file, std::vector<std::string>& parts) {
+                   std::string& file, std::vector<std::string>& parts, std::vector<LayerSymbols>& layers) {
     prepare_gdal();
     Input input(in, bytes);
     TALUS_ASSIGN(const std::string line, input.line());
@@ -377,7 +379,7 @@ Status write_again(std::FILE* in, std::uint64_t bytes, const std::string& stem, 
     if (*ending == 0) return malformed;
     file = stem + ending;
     Status written = what == "raster"   ? write_raster(input, content, file, most_cells, most_bands)
-                     : what == "layers" ? write_layers(input, content, file)
+                     : what == "layers" ? write_layers(input, content, file, layers)
                                         : write_mesh(input, content, file, parts);
     if (written) return {};
     std::error_code ignored;
