@@ -120,6 +120,23 @@ std::string upload_name_of(const std::string& name) {
     return (stem.empty() ? "file" : stem) + (ending.empty() ? "" : "." + ending);
 }
 
+Result<fs::path> unpack_upload(const std::string& name, const fs::path& upload, const fs::path& to,
+                               const geo::ZipLimits& limits) {
+    if (is_zip(name)) {
+        TALUS_TRY(geo::unpack_zip(upload, to, limits));
+        return only_file(name, to);
+    }
+    if (is_companion(name) || lower_case(fs::path(name).extension().string()) == ".shp") {
+        return Error{name + ": is one of several files that belong together; pack all of them in one ZIP archive"};
+    }
+    std::error_code error;
+    const fs::path file = to / upload_name_of(name);
+    fs::create_directories(to, error);
+    if (!error) fs::rename(upload, file, error);
+    if (error) return Error{name + ": cannot be kept; is the disk full?"};
+    return file;
+}
+
 Result<Draft> Draft::make(fs::path folder, const UploadLimits& limits) {
     std::error_code error;
     fs::create_directories(folder / "data", error);
@@ -151,23 +168,6 @@ const Draft::Upload* Draft::find(std::string_view role) const {
     return found == uploads_.end() ? nullptr : &found->second;
 }
 
-/// The file to read, somewhere below `to`.
-Result<fs::path> Draft::unpack(const std::string& name, const fs::path& upload, const fs::path& to) const {
-    if (is_zip(name)) {
-        TALUS_TRY(geo::unpack_zip(upload, to, {bytes_left(), limits_.files}));
-        return only_file(name, to);
-    }
-    if (is_companion(name) || lower_case(fs::path(name).extension().string()) == ".shp") {
-        return Error{name + ": is one of several files that belong together; pack all of them in one ZIP archive"};
-    }
-    std::error_code error;
-    const fs::path file = to / upload_name_of(name);
-    fs::create_directories(to, error);
-    if (!error) fs::rename(upload, file, error);
-    if (error) return Error{name + ": cannot be kept; is the disk full?"};
-    return file;
-}
-
 Result<Draft::Upload> Draft::convert(std::string_view role, const std::string& name, const fs::path& upload,
                                      const fs::path& to, const geo::ForeignReader& reader) const {
     Upload made{name, {}, 0, geo::FileKind::other};
@@ -177,7 +177,7 @@ Result<Draft::Upload> Draft::convert(std::string_view role, const std::string& n
         made.file = std::move(unpacked.scene);
     } else {
         const fs::path foreign = folder_ / "foreign";
-        TALUS_ASSIGN(const fs::path file, unpack(name, upload, foreign));
+        TALUS_ASSIGN(const fs::path file, unpack_upload(name, upload, foreign, {most, limits_.files}));
         geo::ForeignWanted wanted = wanted_for(role);
         wanted.cells = role == "orthophoto" ? largest_photo : limits_.cells;
         std::error_code error;
