@@ -13,7 +13,7 @@ PlanPoint between(const PlanPoint& a, const PlanPoint& b, double t) {
 }
 
 /// The share of a segment that lies within, from and to; empty: none of it.
-std::optional<std::pair<double, double>> inside(const PlanPoint& a, const PlanPoint& b, const Extent& to) {
+std::optional<std::pair<double, double>> share_inside(const PlanPoint& a, const PlanPoint& b, const Extent& to) {
     const double dx = b.x - a.x, dy = b.y - a.y;
     const std::array<std::pair<double, double>, 4> edges{
         {{-dx, a.x - to.x_min}, {dx, to.x_max - a.x}, {-dy, a.y - to.y_min}, {dy, to.y_max - a.y}}};
@@ -33,7 +33,7 @@ std::optional<std::pair<double, double>> inside(const PlanPoint& a, const PlanPo
 
 /// The part of a ring on one side of a line; `depth`: how far inside a point is.
 template <class Depth>
-Ring cut(const Ring& ring, const Depth& depth) {
+Ring half_of(const Ring& ring, const Depth& depth) {
     Ring kept;
     for (std::size_t k = 0; k < ring.size(); ++k) {
         const PlanPoint& a = ring[k];
@@ -51,7 +51,7 @@ std::vector<std::vector<PlanPoint>> clip_line(const std::vector<PlanPoint>& line
     std::vector<std::vector<PlanPoint>> parts;
     bool goes_on = false;
     for (std::size_t k = 1; k < line.size(); ++k) {
-        const auto share = inside(line[k - 1], line[k], to);
+        const auto share = share_inside(line[k - 1], line[k], to);
         if (!share) {
             goes_on = false;
             continue;
@@ -64,10 +64,10 @@ std::vector<std::vector<PlanPoint>> clip_line(const std::vector<PlanPoint>& line
 }
 
 Ring clip_ring(const Ring& ring, const Extent& to) {
-    Ring kept = cut(ring, [&](const PlanPoint& p) { return p.x - to.x_min; });
-    kept = cut(kept, [&](const PlanPoint& p) { return to.x_max - p.x; });
-    kept = cut(kept, [&](const PlanPoint& p) { return p.y - to.y_min; });
-    kept = cut(kept, [&](const PlanPoint& p) { return to.y_max - p.y; });
+    Ring kept = half_of(ring, [&](const PlanPoint& p) { return p.x - to.x_min; });
+    kept = half_of(kept, [&](const PlanPoint& p) { return to.x_max - p.x; });
+    kept = half_of(kept, [&](const PlanPoint& p) { return p.y - to.y_min; });
+    kept = half_of(kept, [&](const PlanPoint& p) { return to.y_max - p.y; });
     return kept.size() < 3 ? Ring() : kept;
 }
 

@@ -20,14 +20,14 @@ namespace {
 
 using nlohmann::json;
 
-constexpr std::size_t longest_qml = 2'000'000, most_symbols = 200, longest_value = 200;
+constexpr std::size_t longest_qml = 2'000'000, most_symbols = 200, longest_symbol_value = 200;
 constexpr double pixels_per_mm = 96 / 25.4;
 
 struct FreeXml {
     void operator()(CPLXMLNode* node) const { CPLDestroyXMLNode(node); }
 };
 
-double number_in(const std::string& text, double otherwise) {
+double number_of_text(const std::string& text, double otherwise) {
     double value = 0;
     const auto read = std::from_chars(text.data(), text.data() + text.size(), value);
     return read.ec == std::errc() && std::isfinite(value) ? value : otherwise;
@@ -73,11 +73,11 @@ std::optional<FeatureStyle> style_of(const CPLXMLNode* symbol) {
     const CPLXMLNode* layer = CPLGetXMLNode(const_cast<CPLXMLNode*>(symbol), "layer");
     if (layer == nullptr) return {};
     const std::string kind = value_of(layer, "class");
-    const double alpha = std::clamp(number_in(value_of(symbol, "alpha"), 1), 0.0, 1.0);
+    const double alpha = std::clamp(number_of_text(value_of(symbol, "alpha"), 1), 0.0, 1.0);
     auto properties = properties_of(layer);
     const auto width = [&](const char* key, double otherwise) {
         const std::string unit = properties[std::string(key) + "_unit"];
-        const double given = number_in(properties[key], otherwise);
+        const double given = number_of_text(properties[key], otherwise);
         return unit == "Pixel" ? given : given * pixels_per_mm;
     };
     FeatureStyle style;
@@ -152,11 +152,11 @@ LayerSymbols symbols_of(const json& written) {
     if (attribute == written.end() || !attribute->is_string() || values == written.end() || !values->is_array()) {
         return symbols;
     }
-    symbols.attribute = attribute->get<std::string>().substr(0, longest_value);
+    symbols.attribute = attribute->get<std::string>().substr(0, longest_symbol_value);
     for (const json& one : *values) {
         const auto value = one.is_object() ? one.find("value") : one.end();
         if (value == one.end() || !value->is_string() || symbols.values.size() >= most_symbols) continue;
-        symbols.values[value->get<std::string>().substr(0, longest_value)] =
+        symbols.values[value->get<std::string>().substr(0, longest_symbol_value)] =
             feature_style_of(one.value("style", json()));
     }
     return symbols;
@@ -180,14 +180,15 @@ LayerSymbols read_qml(const std::string& qml) {
     if (kind == "singleSymbol" && by_name.contains("0")) symbols.values[""] = by_name["0"];
     if (kind != "categorizedSymbol") return symbols;
     const CPLXMLNode* categories = CPLGetXMLNode(document.get(), "=qgis.renderer-v2.categories");
-    symbols.attribute = value_of(renderer, "attr").substr(0, longest_value);
+    symbols.attribute = value_of(renderer, "attr").substr(0, longest_symbol_value);
     if (std::string& name = symbols.attribute; name.size() > 2 && name.front() == '"' && name.back() == '"') {
         name = name.substr(1, name.size() - 2);  // as an expression has it
     }
     for (const CPLXMLNode* one = categories != nullptr ? categories->psChild : nullptr; one != nullptr;
          one = one->psNext) {
         const auto style = one->eType == CXT_Element ? by_name.find(value_of(one, "symbol")) : by_name.end();
-        if (style != by_name.end()) symbols.values[value_of(one, "value").substr(0, longest_value)] = style->second;
+        if (style != by_name.end())
+            symbols.values[value_of(one, "value").substr(0, longest_symbol_value)] = style->second;
     }
     return symbols;
 }

@@ -26,7 +26,7 @@ namespace {
 
 using nlohmann::json;
 
-constexpr std::size_t most_attributes = 30, longest_key = 60, longest_value = 200, most_styles = 1000;
+constexpr std::size_t most_attributes = 30, longest_key = 60, longest_shown = 200, most_feature_styles = 1000;
 constexpr int deepest_collection = 8;
 
 /// At most so many bytes, of whole characters, without what controls a terminal or turns the writing.
@@ -110,7 +110,7 @@ class Styles {
         if (!style || style == FeatureStyle()) return -1;
         const auto same = std::find(list_.begin(), list_.end(), *style);
         if (same != list_.end()) return static_cast<int>(same - list_.begin());
-        if (list_.size() >= most_styles) return -1;
+        if (list_.size() >= most_feature_styles) return -1;
         list_.push_back(*style);
         return static_cast<int>(list_.size()) - 1;
     }
@@ -147,7 +147,7 @@ struct Parts {
     }
 };
 
-std::vector<PlanPoint> points_of(const OGRSimpleCurve& curve) {
+std::vector<PlanPoint> curve_points(const OGRSimpleCurve& curve) {
     std::vector<PlanPoint> points;
     points.reserve(static_cast<std::size_t>(curve.getNumPoints()));
     for (int k = 0; k < curve.getNumPoints(); ++k) points.push_back({curve.getX(k), curve.getY(k)});
@@ -161,12 +161,12 @@ void collect(const OGRGeometry& geometry, const Extent& extent, Parts& parts, in
         const PlanPoint at{point.getX(), point.getY()};
         if (extent.contains(at)) parts.points.push_back({at});
     } else if (type == wkbLineString) {
-        for (auto& part : clip_line(points_of(*geometry.toLineString()), extent)) {
+        for (auto& part : clip_line(curve_points(*geometry.toLineString()), extent)) {
             parts.lines.push_back(std::move(part));
         }
     } else if (type == wkbPolygon) {
         for (const OGRLinearRing* ring : *geometry.toPolygon()) {
-            Ring outline = points_of(*ring);
+            Ring outline = curve_points(*ring);
             if (outline.size() > 1 && outline.front() == outline.back()) outline.pop_back();
             if (Ring kept = clip_ring(outline, extent); !kept.empty()) parts.rings.push_back(std::move(kept));
         }
@@ -182,7 +182,7 @@ json attributes_json(const std::map<std::string, Attribute>& attributes) {
         const std::string name = shortened(key, longest_key);
         if (const auto* number = std::get_if<double>(&value)) list[name] = *number;
         if (const auto* text = std::get_if<std::string>(&value); text != nullptr && !text->empty()) {
-            list[name] = shortened(*text, longest_value);
+            list[name] = shortened(*text, longest_shown);
         }
     }
     return list;
@@ -193,7 +193,7 @@ class OverlayReader {
     OverlayReader(OGRLayer& layer, const LayerSymbols& symbols, const OverlayGround& ground,
                   const OverlayLimits& limits)
         : layer_(layer), ground_(ground), limits_(limits), styles_(symbols) {
-        overlay_.name = shortened(layer.GetName(), longest_value);
+        overlay_.name = shortened(layer.GetName(), longest_shown);
     }
 
     Result<VectorOverlay> read() {
@@ -257,7 +257,7 @@ class OverlayReader {
         for (auto it = attributes.begin(); it != attributes.end(); ++it) {
             const auto* text = std::get_if<std::string>(&it->second);
             if (text == nullptr || lower_case(it->first) != "name") continue;
-            name = shortened(*text, longest_value);
+            name = shortened(*text, longest_shown);
             attributes.erase(it);
             break;
         }
@@ -350,7 +350,7 @@ Status check_overlay_text(const std::string& text, const OverlayLimits& limits) 
     TALUS_ASSIGN(const json whole, parse_json(text));
     const json styles = whole.is_object() ? whole.value("styles", json()) : json();
     const json features = whole.is_object() ? whole.value("features", json()) : json();
-    if (!styles.is_array() || !features.is_array() || whole.size() != 2 || styles.size() > most_styles ||
+    if (!styles.is_array() || !features.is_array() || whole.size() != 2 || styles.size() > most_feature_styles ||
         features.empty() || features.size() > 3 * limits.features) {
         return Error{"is no list of features with styles"};
     }

@@ -7,8 +7,12 @@ void add_overlay_routes(Router& router, Overlays& overlays) {
     router.add({"GET", "/api/overlays", Role::viewer, [&overlays](const Request&, const Respond& respond) {
                     respond(json_response(200, overlays.describe()));
                 }});
-    router.add({"GET", "/api/overlays/{id}", Role::viewer,
-                [&overlays](const Request& request, const Respond& respond) { overlays.data(request, respond); }});
+    router.add({"GET", "/api/overlays/{id}", Role::viewer, [&overlays](const Request& request, const Respond& respond) {
+                    overlays.data(request, false, respond);
+                }});
+    router.add(
+        {"GET", "/api/overlays/{id}/picture", Role::viewer,
+         [&overlays](const Request& request, const Respond& respond) { overlays.data(request, true, respond); }});
     router.add({"GET", "/api/tiles", Role::viewer,
                 [&overlays](const Request&, const Respond& respond) { overlays.tiles(respond); }});
     Route upload{"PUT", "/api/overlays", Role::controller,

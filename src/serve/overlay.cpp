@@ -21,7 +21,7 @@ namespace {
 
 using nlohmann::json;
 
-constexpr std::size_t longest_name = 80, longest_note = 400, longest_address = 500;
+constexpr std::size_t longest_saved_name = 80, longest_note = 400, longest_address = 500;
 constexpr std::string_view vector_type = "application/json";
 
 std::string to_base64(const std::string& bytes) {
@@ -47,12 +47,12 @@ bool is_picture(const std::string& type, std::string_view bytes) {
     return type == "image/webp" && bytes.size() > 12 && bytes.starts_with("RIFF") && bytes.substr(8, 4) == "WEBP";
 }
 
-std::string text_in(const json& object, const char* key, std::size_t longest) {
+std::string saved_text(const json& object, const char* key, std::size_t longest) {
     const auto found = object.find(key);
     return found != object.end() && found->is_string() ? tidy_name(found->get<std::string>(), longest) : "";
 }
 
-double number_in(const json& object, const char* key, double otherwise) {
+double saved_number(const json& object, const char* key, double otherwise) {
     const auto found = object.find(key);
     return found != object.end() && found->is_number() ? found->get<double>() : otherwise;
 }
@@ -62,21 +62,21 @@ Result<Overlay> read_one(const json& written, const OverlayQuota& quota) {
     TALUS_TRY(twin::check_keys(written, {"id", "name", "kind", "by", "visible", "opacity", "colour", "features",
                                          "outside", "styled", "low", "high", "note", "bytes", "type", "data"}));
     Overlay overlay;
-    overlay.name = text_in(written, "name", longest_name);
+    overlay.name = saved_text(written, "name", longest_saved_name);
     if (overlay.name.empty()) return Error{"name: missing; it must be a text"};
-    overlay.by = text_in(written, "by", longest_name);
-    overlay.note = text_in(written, "note", longest_note);
-    overlay.colour = geo::colour_of(text_in(written, "colour", 7));
+    overlay.by = saved_text(written, "by", longest_saved_name);
+    overlay.note = saved_text(written, "note", longest_note);
+    overlay.colour = geo::colour_of(saved_text(written, "colour", 7));
     if (overlay.colour.empty()) return Error{"colour: must be as #1f77b4"};
     overlay.visible = written.value("visible", json(true)) != false;
-    overlay.opacity = std::clamp(number_in(written, "opacity", 1), 0.0, 1.0);
-    overlay.features = static_cast<std::size_t>(std::clamp(number_in(written, "features", 0), 0.0, 1e9));
-    overlay.outside = static_cast<std::size_t>(std::clamp(number_in(written, "outside", 0), 0.0, 1e9));
+    overlay.opacity = std::clamp(saved_number(written, "opacity", 1), 0.0, 1.0);
+    overlay.features = static_cast<std::size_t>(std::clamp(saved_number(written, "features", 0), 0.0, 1e9));
+    overlay.outside = static_cast<std::size_t>(std::clamp(saved_number(written, "outside", 0), 0.0, 1e9));
     overlay.styled = written.value("styled", json(false)) == true;
-    overlay.low = number_in(written, "low", std::numeric_limits<double>::quiet_NaN());
-    overlay.high = number_in(written, "high", std::numeric_limits<double>::quiet_NaN());
+    overlay.low = saved_number(written, "low", std::numeric_limits<double>::quiet_NaN());
+    overlay.high = saved_number(written, "high", std::numeric_limits<double>::quiet_NaN());
     overlay.has_range = std::isfinite(overlay.low) && std::isfinite(overlay.high);
-    overlay.type = text_in(written, "type", longest_name);
+    overlay.type = saved_text(written, "type", longest_saved_name);
     const auto data = written.find("data");
     if (data == written.end() || !data->is_string()) return Error{"data: missing; it must be a text"};
     auto bytes = data->get<std::string>();

@@ -23,15 +23,15 @@ using nlohmann::json;
 namespace fs = std::filesystem;
 
 constexpr double largest_picture = 1e9;  // pixels; it is read at a fraction of its size
-constexpr std::size_t longest_name = 80, most_files = 200;
+constexpr std::size_t longest_layer_name = 80, most_files = 200;
 constexpr int grid_steps = 32;  // of the terrain, between places whose longitude and latitude are told
 
 /// Distinct on grass, rock and debris, for layers whose files have no style.
-constexpr std::array<const char*, 8> colours = {"#d1495b", "#1f6feb", "#e8a202", "#7b2d8b",
-                                                "#0b8457", "#c44900", "#00798c", "#5c4d3c"};
+constexpr std::array<const char*, 8> layer_colours = {"#d1495b", "#1f6feb", "#e8a202", "#7b2d8b",
+                                                      "#0b8457", "#c44900", "#00798c", "#5c4d3c"};
 
 /// What the child or a reader says, by the name that the user gave the file, without folders.
-std::string plain(std::string message, const fs::path& folder, const std::string& kept, const std::string& name) {
+std::string as_named(std::string message, const fs::path& folder, const std::string& kept, const std::string& name) {
     for (const std::string& path : {(folder / kept).string(), folder.string() + "/"}) {
         for (std::size_t at = 0; (at = message.find(path)) != std::string::npos;) message.erase(at, path.size());
     }
@@ -39,9 +39,9 @@ std::string plain(std::string message, const fs::path& folder, const std::string
     return message.starts_with(name + ":") ? message : name + ": " + message;
 }
 
-Result<std::vector<Overlay>> read_file(const std::string& name, const fs::path& file, const fs::path& folder,
-                                       const geo::ForeignReader& reader, const geo::OverlayGround& ground,
-                                       const OverlayQuota& quota) {
+Result<std::vector<Overlay>> read_overlay_file(const std::string& name, const fs::path& file, const fs::path& folder,
+                                               const geo::ForeignReader& reader, const geo::OverlayGround& ground,
+                                               const OverlayQuota& quota) {
     geo::ForeignWanted wanted;
     wanted.vector = wanted.picture = wanted.styles = true;
     wanted.cells = largest_picture;
@@ -50,7 +50,7 @@ Result<std::vector<Overlay>> read_file(const std::string& name, const fs::path& 
         "GeoTIFF are";
     TALUS_ASSIGN(const geo::ForeignFile made, geo::convert_foreign(file, wanted, folder / "again", reader));
     std::vector<Overlay> overlays;
-    const std::string stem = tidy_name(fs::path(name).stem().string(), longest_name);
+    const std::string stem = tidy_name(fs::path(name).stem().string(), longest_layer_name);
     if (made.kind == geo::FileKind::raster) {
         TALUS_ASSIGN(auto picture, geo::read_picture_overlay(made.file.string(), ground, quota.layer));
         Overlay overlay;
@@ -68,7 +68,7 @@ Result<std::vector<Overlay>> read_file(const std::string& name, const fs::path& 
     TALUS_ASSIGN(auto layers, geo::read_vector_overlays(made.file.string(), made.layers, ground, quota.layer));
     for (geo::VectorOverlay& layer : layers) {
         Overlay overlay;
-        overlay.name = layers.size() == 1 ? stem : tidy_name(layer.name, longest_name);
+        overlay.name = layers.size() == 1 ? stem : tidy_name(layer.name, longest_layer_name);
         overlay.features = layer.features;
         overlay.outside = layer.outside;
         overlay.styled = layer.styled;
@@ -171,17 +171,18 @@ Result<std::vector<Overlay>> Overlays::read(const std::string& name, const fs::p
     const geo::OverlayGround ground{scene.crs, scene.terrain.elevation().geometry.extent()};
     const auto failed = [&](const Error& error, const fs::path& file) {
         return Error{
-            plain(error.message, file.empty() ? unpacked : file.parent_path(), file.filename().string(), name)};
+            as_named(error.message, file.empty() ? unpacked : file.parent_path(), file.filename().string(), name)};
     };
     const auto file = unpack_upload(name, folder / "upload.part", unpacked, {quota_.upload, most_files});
     if (!file) return failed(file.error(), {});
-    auto made = read_file(name, *file, folder, reader, ground, quota_);
-    if (!made) return failed(Error{plain(made.error().message, folder, "again", name)}, *file);
+    auto made = read_overlay_file(name, *file, folder, reader, ground, quota_);
+    if (!made) return failed(Error{as_named(made.error().message, folder, "again", name)}, *file);
     return made;
 }
 
 void Overlays::give_id(Overlay& overlay) {
-    if (overlay.colour.empty()) overlay.colour = colours[static_cast<std::size_t>(numbers_) % colours.size()];
+    if (overlay.colour.empty())
+        overlay.colour = layer_colours[static_cast<std::size_t>(numbers_) % layer_colours.size()];
     overlay.id = fmt::format("overlay-{}", ++numbers_);
 }
 
@@ -258,31 +259,32 @@ void Overlays::add(std::vector<Overlay> overlays, const Respond& respond) {
                                 {"created", fmt::format("overlay-{}", numbers_)}}));
 }
 
-void Overlays::data(const Request& request, const Respond& respond) const {
+void Overlays::data(const Request& request, bool picture, const Respond& respond) const {
     for (const Overlay& overlay : list_) {
-        if (overlay.id != request.parameters.at("id")) continue;
+        if (overlay.id != request.parameters.at("id") || overlay.picture != picture) continue;
         Response response;
         response.type = overlay.type;
         response.body = overlay.data;
         return respond(response);
     }
-    respond(error_response(404, "there is no such layer; it has been removed"));
+    respond(error_response(404, "there is no such layer; it may have been removed"));
 }
 
 void Overlays::change(const Request& request, const Respond& respond) {
     serve::change(session_, request, respond, [&](const std::string&) {
         const auto overlay = find(request.parameters.at("id"));
-        if (overlay == list_.end()) return respond(error_response(404, "there is no such layer; it has been removed"));
+        if (overlay == list_.end())
+            return respond(error_response(404, "there is no such layer; it may have been removed"));
         const auto wanted = parse_json(request.body);
         const Status changed = [&]() -> Status {
             if (!wanted) return wanted.error();
             if (!wanted->is_object()) return Error{"the body is an object"};
             TALUS_TRY(twin::check_keys(*wanted, {"name", "visible", "opacity", "colour"}));
             Overlay made = *overlay;
-            TALUS_ASSIGN(const auto name, twin::read_text(*wanted, "name", longest_name));
+            TALUS_ASSIGN(const auto name, twin::read_text(*wanted, "name", longest_layer_name));
             TALUS_ASSIGN(const auto opacity, twin::read_number(*wanted, "opacity", {0, 1, true, true}, ""));
-            TALUS_ASSIGN(const auto colour, twin::read_text(*wanted, "colour", longest_name));
-            if (name) made.name = tidy_name(*name, longest_name);
+            TALUS_ASSIGN(const auto colour, twin::read_text(*wanted, "colour", longest_layer_name));
+            if (name) made.name = tidy_name(*name, longest_layer_name);
             made.opacity = opacity.value_or(made.opacity);
             if (colour) made.colour = geo::colour_of(*colour);
             if (made.colour.empty()) return Error{fmt::format("colour = {}: must be as #1f77b4", *colour)};
@@ -303,7 +305,8 @@ void Overlays::change(const Request& request, const Respond& respond) {
 void Overlays::remove(const Request& request, const Respond& respond) {
     serve::change(session_, request, respond, [&](const std::string&) {
         const auto overlay = find(request.parameters.at("id"));
-        if (overlay == list_.end()) return respond(error_response(404, "there is no such layer; it has been removed"));
+        if (overlay == list_.end())
+            return respond(error_response(404, "there is no such layer; it may have been removed"));
         removed_ = std::move(*overlay);
         list_.erase(overlay);
         tell();

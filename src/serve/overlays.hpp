@@ -36,8 +36,8 @@ class Overlays {
     [[nodiscard]] nlohmann::json saved() const;
     /// A file that comes piece by piece, of which overlays are made.
     [[nodiscard]] std::shared_ptr<Intake> intake(const Request& request);
-    /// Points, lines and areas as JSON, or a picture.
-    void data(const Request& request, const Respond& respond) const;
+    /// Points, lines and areas as JSON; or a picture.
+    void data(const Request& request, bool picture, const Respond& respond) const;
     /// Name, whether it is shown, opacity, colour, as the body says.
     void change(const Request& request, const Respond& respond);
     void remove(const Request& request, const Respond& respond);

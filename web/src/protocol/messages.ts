@@ -1240,6 +1240,14 @@ export interface WantedShare {
   key?: string;
 }
 
+export interface Overlay { id: string; name: string; kind: "vector" | "picture"; by: string; visible: boolean; opacity: number; colour: string; features: number; outside: number; styled: boolean; low: number | null; high: number | null; note: string; bytes: number }
+export interface Overlays { overlays: Overlay[]; removed: string | null; tiles: boolean; bytes_left: number }
+export interface WantedOverlay { name?: string; visible?: boolean; opacity?: number; colour?: string }
+export interface OverlayStyle { stroke: string; stroke_opacity: number; fill: string; fill_opacity: number; width_px: number; size_px: number }
+export interface OverlayFeature { kind: "point" | "line" | "area"; parts: number[][]; name: string; attributes: Record<string, string | number>; style: number }
+export interface OverlayData { styles: OverlayStyle[]; features: OverlayFeature[] }
+export interface Tiles { addresses: string[]; steps: number; degrees: number[] }
+
 /** With the id of an existing object, only what changes needs to be given. */
 export type Action =
   | { action: "run" | "pause" | "step"; scenarios?: ScenarioName[] }
@@ -1272,6 +1280,7 @@ export type ServerMessage =
   | { type: "people"; people: Person[]; controller: string | null; request: ControlRequest | null }
   | ({ type: "calibration" } & CalibrationStatus)
   | ({ type: "alerts" } & Alerts)
+  | ({ type: "overlays" } & Overlays)
   | ({ type: "depth_averaged" } & DepthAveragedStatus)
   | { type: "scenarios"; scenarios: ScenarioName[] }
   | { type: "ended" }
