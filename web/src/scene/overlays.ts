@@ -126,7 +126,11 @@ export class OverlayLayers {
       view.overlayLabels = this.labels(name);
       stage.relabel(view);
     }
-    for (const name of [...this.marks.keys()]) if (!stage.views.has(name)) this.marks.delete(name);
+    for (const [name, held] of [...this.marks]) {
+      if (stage.views.has(name)) continue;
+      for (const { group } of held.values()) disposeMarks(group);
+      this.marks.delete(name);
+    }
     stage.invalidate();
   }
   /** Areas, pictures and tiles; null: there are none. */
