@@ -84,7 +84,7 @@ export function overlayMarks(data: OverlayData, colour: string, opacity: number,
     const geometry = new LineSegmentsGeometry();
     geometry.setPositions(kind.positions);
     const line = new LineSegments2(geometry, new LineMaterial({ color: new Color(kind.colour).getHex(), linewidth: kind.width_px, transparent: true, opacity: kind.opacity,
-      polygonOffset: true, polygonOffsetFactor: -2, polygonOffsetUnits: -8 }));
+      polygonOffset: true, polygonOffsetFactor: -4, polygonOffsetUnits: -24 }));
     line.renderOrder = 4;
     line.frustumCulled = false;
     group.add(line);
