@@ -31,6 +31,7 @@ describe("the feature at a place", () => {
     expect(boundsOf(data)).toEqual([0, 0, 100, 100]);
     expect(boundsOf({ styles: [], features: [] })).toBeNull();
     expect(nameAt(point)).toEqual([50, 20]);
+    expect(nameAt(line)).toEqual([50, 20]);
     expect(nameAt(area)).toEqual([50, 50]);
   });
   it("has the file's style, or else the layer's colour", () => {

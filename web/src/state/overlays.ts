@@ -88,8 +88,9 @@ export function featureAt(data: OverlayData, x: number, y: number, near: number)
 export function nameAt(feature: OverlayFeature): Point {
   const part = feature.parts[0];
   if (feature.kind !== "area") {
-    const k = 2 * Math.floor(part.length / 4);
-    return [part[k], part[k + 1]];
+    const middle = (part.length / 2 - 1) / 2;
+    const [a, b] = [2 * Math.floor(middle), 2 * Math.ceil(middle)];
+    return [(part[a] + part[b]) / 2, (part[a + 1] + part[b + 1]) / 2];
   }
   let [x, y] = [0, 0];
   for (let k = 0; k + 1 < part.length; k += 2) {
