@@ -21,6 +21,7 @@
 #include "layers.hpp"
 #include "scene/builtin.hpp"
 #include "scene/scene.hpp"
+#include "serve/overlay.hpp"
 #include "serve/server.hpp"
 #include "tokens.hpp"
 
@@ -41,6 +42,7 @@ struct ServeArguments {
     std::string data;                    ///< value of TALUS_DATA; empty: as in the environment
     std::string calibrations;            ///< a folder that keeps calibrations; empty: they are not kept
     std::vector<std::string> ensembles;  ///< folders of finished ensembles whose maps are shown
+    std::vector<std::string> tiles;      ///< addresses of map tiles that the page may offer
     AlertArguments alerts;
     bool run = false;  ///< start immediately
     bool quiet = false, json = false;
@@ -129,6 +131,10 @@ int serve_command(const ServeArguments& arguments) {
     if (const Status fits = check_alerts(arguments.alerts, loaded->spec); !fits) {
         return fail(exit_code::bad_input, fits.error().message);
     }
+    for (const std::string& address : arguments.tiles) {
+        if (const Status right = serve::check_tile_address(address); !right)
+            return fail(exit_code::bad_input, "--tiles " + right.error().message);
+    }
     auto alerts = read_alerts(arguments.alerts, *tokens);
     if (!alerts) return fail(exit_code::bad_input, alerts.error().message);
     if (watch.stop_requested()) return exit_code::success;
@@ -145,6 +151,7 @@ int serve_command(const ServeArguments& arguments) {
     options.scenario.overrides = *overrides;
     options.scenario.fault_folder = "talus_out";
     options.run = arguments.run;
+    options.tiles = arguments.tiles;
     options.ensembles.assign(arguments.ensembles.begin(), arguments.ensembles.end());
     options.calibration.source = {file, *overrides};
     options.calibration.own_files = found->unpacked != nullptr;
@@ -220,6 +227,12 @@ void add_serve(CLI::App& program, std::vector<Command>& commands) {
     app->add_option("--ensemble", serve->ensembles,
                     "folder of a finished talus ensemble of this scene, whose maps the page shows; may be repeated")
         ->type_name("DIR")
+        ->allow_extra_args(false);
+    app->add_option(
+           "--tiles", serve->tiles,
+           "address of map tiles, with {z}, {x} and {y}, that the page offers as a background; may be repeated. "
+           "Off until somebody switches it on; then each browser loads them from there, not this program")
+        ->type_name("URL")
         ->allow_extra_args(false);
     app->add_flag("--run", serve->run, "start running instead of paused at time 0");
     app->add_option("--threads", serve->threads, "number of threads; default: all cores; does not affect the result")

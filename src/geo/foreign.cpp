@@ -45,8 +45,11 @@ Result<ForeignFile> convert_foreign(const fs::path& file, const ForeignWanted& w
     child.program = reader.program.empty() ? fs::read_symlink("/proc/self/exe", failed) : reader.program;
     if (failed) return Error{file.string() + ": cannot be read: /proc is not mounted"};
     std::string kinds = "-";
-    for (const auto& [is, letter] :
-         {std::pair{wanted.raster, 'r'}, {wanted.vector, 'v'}, {wanted.mesh, 'm'}, {wanted.picture, 'p'}}) {
+    for (const auto& [is, letter] : {std::pair{wanted.raster, 'r'},
+                                     {wanted.vector, 'v'},
+                                     {wanted.mesh, 'm'},
+                                     {wanted.picture, 'p'},
+                                     {wanted.styles, 's'}}) {
         if (is) kinds += letter;
     }
     child.arguments = {foreign_word,
@@ -75,8 +78,8 @@ Result<ForeignFile> convert_foreign(const fs::path& file, const ForeignWanted& w
     ForeignFile made;
     std::string name;
     std::vector<std::string> parts;
-    const Status written =
-        write_again(numbers.get(), bytes, stem.string(), wanted.cells, wanted.picture ? 5 : wanted.bands, name, parts);
+    const Status written = write_again(numbers.get(), bytes, stem.string(), wanted.cells,
+                                       wanted.picture ? 5 : wanted.bands, name, parts, made.layers);
     if (!written) {
         // What the child says begins with the file already.
         const std::string& why = written.error().message;

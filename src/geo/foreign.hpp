@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "core/result.hpp"
+#include "geo/layer_style.hpp"
 #include "geo/repair_raster.hpp"
 
 /// Untrusted files, which somebody else made. They are read once, by a child process that sees nothing but their
@@ -28,6 +29,7 @@ struct ForeignReader {
 /// What a file may be, and how much of it is wanted.
 struct ForeignWanted {
     bool raster = false, vector = false, mesh = false, picture = false;
+    bool styles = false;       ///< of the layers of a vector file, where it has some
     int bands = 1;             ///< of a raster
     double cells = 5e7;        ///< of a band, at most
     std::string purpose = {};  ///< what is said of a file that is none of these: "no raster"
@@ -38,6 +40,7 @@ struct ForeignFile {
     std::filesystem::path file;                ///< GeoTIFF, GeoPackage, or roofs.json
     FileKind kind = FileKind::other;           ///< other: a mesh
     std::vector<std::filesystem::path> parts;  ///< files that were read beside it, in its folder
+    std::vector<LayerSymbols> layers;          ///< of each layer of a vector file
 };
 
 /// Reads `file` and writes it again as STEM.tif (a GeoTIFF without metadata, masks and overviews), STEM.gpkg (a

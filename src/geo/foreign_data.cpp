@@ -166,6 +166,7 @@ void ForeignOutput::layers(const std::vector<ForeignLayer>& layers) {
         json fields = json::array();
         for (const Field& field : layer.fields) fields.push_back({{"name", field.name}, {"text", field.is_text}});
         list.push_back({{"name", layer.name}, {"crs", layer.crs}, {"geojson", layer.of_geojson}, {"fields", fields}});
+        if (!layer.symbols.empty()) list.back()["symbols"] = to_json(layer.symbols);
     }
     header(dumped({{"layers", list}}));
 }

@@ -13,6 +13,8 @@
 #include <ogr_geometry.h>
 
 #include "core/result.hpp"
+#include "geo/foreign.hpp"
+#include "geo/layer_style.hpp"
 #include "geo/mesh.hpp"
 #include "geo/vector.hpp"
 
@@ -42,6 +44,7 @@ struct ForeignLayer {
     std::string name, crs;
     bool of_geojson = false;  ///< WGS 84 may be what is read where nothing is stated
     std::vector<Field> fields;
+    LayerSymbols symbols;  ///< by the file's own style; empty: none was asked for, or there is none
 };
 
 /// A mesh as arrays.
@@ -84,8 +87,9 @@ class ForeignOutput {
     bool good_ = true;
 };
 
-/// Writes the canonical file from what the child handed over. `kind` and `parts` are set.
+/// Writes the canonical file from what the child handed over. `file`, `parts` and `layers` are set.
 [[nodiscard]] Status write_again(std::FILE* in, std::uint64_t bytes, const std::string& stem, double most_cells,
-                                 int most_bands, std::string& file, std::vector<std::string>& parts);
+                                 int most_bands, std::string& file, std::vector<std::string>& parts,
+                                 std::vector<LayerSymbols>& layers);
 
 }  // namespace talus::geo

@@ -163,6 +163,7 @@ class ForeignReading {
     Status read_mesh();
     Status read_raster(GDALDataset& data);
     Status read_layers(GDALDataset& data);
+    void read_styles(std::vector<ForeignLayer>& layers) const;
     Status read_layer(OGRLayer& layer, const std::vector<Field>& fields, bool swapped);
     [[nodiscard]] Result<std::string> crs_of(const OGRSpatialReference* reference) const {
         const std::string text = reference != nullptr ? text_of(*reference) : "";
@@ -355,9 +356,40 @@ Status ForeignReading::read_layers(GDALDataset& data) {
         swapped.push_back(other_way);
     }
     if (layers.empty()) return Error{file_ + ": holds no layer with geometry"};
+    if (wanted_.styles) read_styles(layers);
     out_.layers(layers);
     for (std::size_t k = 0; k < layers.size(); ++k) TALUS_TRY(read_layer(*from[k], layers[k].fields, swapped[k]));
     return {};
+}
+
+/// Of the table in which QGIS keeps the styles of a GeoPackage; the default one of a layer, or else its first.
+void ForeignReading::read_styles(std::vector<ForeignLayer>& layers) const {
+    if (format_ != "GPKG") return;
+    const GdalMessages quiet;
+    const char* const drivers[] = {"GPKG", nullptr};
+    CPLStringList options;
+    options.SetNameValue("LIST_ALL_TABLES", "YES");
+    const GDALDatasetUniquePtr data(
+        GDALDataset::Open(file_.c_str(), GDAL_OF_VECTOR | GDAL_OF_READONLY, drivers, options.List()));
+    OGRLayer* table = data ? data->GetLayerByName("layer_styles") : nullptr;
+    if (table == nullptr) return;
+    const OGRFeatureDefn& columns = *table->GetLayerDefn();
+    const int of = columns.GetFieldIndex("f_table_name"), qml = columns.GetFieldIndex("styleQML"),
+              first = columns.GetFieldIndex("useAsDefault");
+    if (of < 0 || qml < 0) return;
+    constexpr int most_styles = 500;
+    for (int k = 0; k < most_styles; ++k) {
+        const OGRFeatureUniquePtr row(table->GetNextFeature());
+        if (!row) return;
+        const auto layer = std::find_if(layers.begin(), layers.end(), [&](const ForeignLayer& one) {
+            return one.name == to_utf8(row->GetFieldAsString(of));
+        });
+        if (layer == layers.end()) continue;
+        const bool preferred = first >= 0 && row->GetFieldAsInteger(first) != 0;
+        if (!layer->symbols.empty() && !preferred) continue;
+        if (LayerSymbols symbols = read_qml(row->GetFieldAsString(qml)); !symbols.empty())
+            layer->symbols = std::move(symbols);
+    }
 }
 
 Status ForeignReading::read_layer(OGRLayer& layer, const std::vector<Field>& fields, bool swapped) {
@@ -421,6 +453,7 @@ int run_child_part(const char* const* argv) {
         wanted.vector = kinds.find('v') != std::string_view::npos;
         wanted.mesh = kinds.find('m') != std::string_view::npos;
         wanted.picture = kinds.find('p') != std::string_view::npos;
+        wanted.styles = kinds.find('s') != std::string_view::npos;
         wanted.bands = std::atoi(argv[4]);
         wanted.cells = std::atof(argv[5]);
         wanted.purpose = argv[6];

@@ -274,6 +274,7 @@ Result<ForeignLayer> read_layer(const json& written) {
     layer.crs = text_in(written, "crs");
     layer.of_geojson = written.value("geojson", json(false)) == true;
     const json fields = written.value("fields", json());
+    layer.symbols = symbols_of(written.value("symbols", json()));
     if (layer.name.empty() || !fields.is_array() || fields.size() > most_fields) return malformed;
     for (const json& field : fields) {
         if (!field.is_object()) return malformed;
@@ -326,7 +327,7 @@ Status write_layer(Input& in, GDALDataset& data, const ForeignLayer& from, std::
     }
 }
 
-Status write_layers(Input& in, const json& head, const std::string& file) {
+Status write_layers(Input& in, const json& head, const std::string& file, std::vector<LayerSymbols>& symbols) {
     if (!head.is_array() || head.empty() || head.size() > most_layers) return malformed;
     const GdalMessages messages;
     const auto failed = [&] { return Error{"cannot be kept: " + messages.failure_or("is the disk full?")}; };
@@ -337,6 +338,7 @@ Status write_layers(Input& in, const json& head, const std::string& file) {
     for (const json& written : head) {
         TALUS_ASSIGN(const ForeignLayer layer, read_layer(written));
         TALUS_TRY(write_layer(in, *data, layer, names, messages));
+        symbols.push_back(layer.symbols);
     }
     if (in.left() != 0) return malformed;
     if (data->CommitTransaction() != OGRERR_NONE) return failed();
@@ -363,7 +365,7 @@ Status write_mesh(Input& in, const json& parts_read, const std::string& file, st
 }  // namespace
 
 Status write_again(std::FILE* in, std::uint64_t bytes, const std::string& stem, double most_cells, int most_bands,
-                   std::string& file, std::vector<std::string>& parts) {
+                   std::string& file, std::vector<std::string>& parts, std::vector<LayerSymbols>& layers) {
     prepare_gdal();
     Input input(in, bytes);
     TALUS_ASSIGN(const std::string line, input.line());
@@ -379,7 +381,7 @@ Status write_again(std::FILE* in, std::uint64_t bytes, const std::string& stem, 
     if (*ending == 0) return malformed;
     file = stem + ending;
     Status written = what == "raster"   ? write_raster(input, content, file, most_cells, most_bands)
-                     : what == "layers" ? write_layers(input, content, file)
+                     : what == "layers" ? write_layers(input, content, file, layers)
                                         : write_mesh(input, content, file, parts);
     if (written) return {};
     std::error_code ignored;

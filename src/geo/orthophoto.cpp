@@ -4,6 +4,7 @@
 #include <array>
 #include <atomic>
 #include <cmath>
+#include <iterator>
 #include <memory>
 #include <vector>
 
@@ -14,6 +15,7 @@
 
 #include "core/try.hpp"
 #include "geo/gdal.hpp"
+#include "geo/overlay.hpp"
 #include "geo/spatial_reference.hpp"
 
 namespace talus::geo {
@@ -213,6 +215,118 @@ Result<Orthophoto> read_orthophoto(const std::string& file, const Crs& crs, cons
     if (photo.bytes.empty())
         return Error{fmt::format("{}: {}", file, "cannot be encoded: " + messages.failure_or("GDAL gave no reason"))};
     return photo;
+}
+
+namespace {
+
+/// Dark to light: blue, green, yellow (after viridis: Smith and van der Walt 2015).
+std::array<GByte, 3> ramp_at(double share) {
+    constexpr std::array<std::array<double, 3>, 5> stops{
+        {{68, 1, 84}, {59, 82, 139}, {33, 145, 140}, {94, 201, 98}, {253, 231, 37}}};
+    const double at = std::clamp(share, 0.0, 1.0) * (stops.size() - 1);
+    const auto k = std::min<std::size_t>(static_cast<std::size_t>(at), stops.size() - 2);
+    std::array<GByte, 3> colour{};
+    for (std::size_t c = 0; c < colour.size(); ++c) {
+        colour[c] = static_cast<GByte>(
+            std::lround(stops[k][c] + (at - static_cast<double>(k)) * (stops[k + 1][c] - stops[k][c])));
+    }
+    return colour;
+}
+
+/// Values over the terrain as colours; its range without the outermost hundredths, so that a single cell does not set
+/// it.
+Result<PictureOverlay> coloured_values(GDALDataset& file, const OverlayGround& ground, const OverlayLimits& limits) {
+    const GdalMessages messages;
+    const OGRSpatialReference target = to_spatial_reference(ground.crs);
+    const Extent& extent = ground.extent;
+    PictureOverlay made;
+    const double pixel = std::max(extent.width(), extent.height()) / std::min(limits.pixels, 2048);
+    made.columns = std::max(1, static_cast<int>(std::lround(extent.width() / pixel)));
+    made.rows = std::max(1, static_cast<int>(std::lround(extent.height() / pixel)));
+    const auto number = [](double value) { return fmt::format("{:.12g}", value); };
+    std::vector<std::string> words{"-of",
+                                   "MEM",
+                                   "-ot",
+                                   "Float64",
+                                   "-dstnodata",
+                                   "nan",
+                                   "-te",
+                                   number(extent.x_min),
+                                   number(extent.y_min),
+                                   number(extent.x_max),
+                                   number(extent.y_max),
+                                   "-ts",
+                                   std::to_string(made.columns),
+                                   std::to_string(made.rows)};
+    if (!target.IsEmpty() && file.GetSpatialRef() != nullptr) {
+        words.insert(words.end(), {"-t_srs", wkt_of(target)});
+    } else if (!target.IsEmpty()) {
+        words.insert(words.end(), {"-s_srs", wkt_of(target), "-t_srs", wkt_of(target)});
+        made.note = "states no coordinate reference system; taken to be in the terrain's";
+    }
+    const GDALDatasetUniquePtr cut = warped(file, words);
+    const auto count = static_cast<std::size_t>(made.columns) * static_cast<std::size_t>(made.rows);
+    std::vector<double> values(count);
+    if (!cut || cut->GetRasterBand(1)->RasterIO(GF_Read, 0, 0, made.columns, made.rows, values.data(), made.columns,
+                                                made.rows, GDT_Float64, 0, 0, nullptr) != CE_None) {
+        return Error{"its cells cannot be read: " + messages.failure_or("GDAL gave no reason")};
+    }
+    std::vector<double> there;
+    std::copy_if(values.begin(), values.end(), std::back_inserter(there), [](double v) { return std::isfinite(v); });
+    if (there.empty()) return Error{"lies outside the terrain, or has no data on it"};
+    std::sort(there.begin(), there.end());
+    made.has_range = true;
+    made.low = there[there.size() / 100];
+    made.high = there[there.size() - 1 - there.size() / 100];
+    const double span = made.high > made.low ? made.high - made.low : 1;
+    GDALDriver* memory = GetGDALDriverManager()->GetDriverByName("MEM");
+    const GDALDatasetUniquePtr picture(
+        memory != nullptr ? memory->Create("", made.columns, made.rows, 4, GDT_Byte, nullptr) : nullptr);
+    if (!picture) return Error{"cannot be drawn: " + messages.failure_or("GDAL gave no reason")};
+    std::vector<GByte> band(count);
+    for (int c = 0; c < 4; ++c) {
+        for (std::size_t k = 0; k < count; ++k) {
+            const bool shown = std::isfinite(values[k]);
+            band[k] = c == 3  ? static_cast<GByte>(shown ? 255 : 0)
+                      : shown ? ramp_at((values[k] - made.low) / span)[static_cast<std::size_t>(c)]
+                              : GByte{0};
+        }
+        GDALRasterBand& to = *picture->GetRasterBand(c + 1);
+        to.SetColorInterpretation(static_cast<GDALColorInterp>(GCI_RedBand + c));
+        if (to.RasterIO(GF_Write, 0, 0, made.columns, made.rows, band.data(), made.columns, made.rows, GDT_Byte, 0, 0,
+                        nullptr) != CE_None) {
+            return Error{"cannot be drawn: " + messages.failure_or("GDAL gave no reason")};
+        }
+    }
+    made.type = "image/png";
+    made.bytes = encoded(*picture, "PNG", {});
+    if (made.bytes.empty()) return Error{"cannot be encoded: " + messages.failure_or("GDAL gave no reason")};
+    return Result<PictureOverlay>(std::move(made));
+}
+
+}  // namespace
+
+Result<PictureOverlay> read_picture_overlay(const std::string& file, const OverlayGround& ground,
+                                            const OverlayLimits& limits) {
+    {
+        TALUS_ASSIGN(const auto data, open_dataset(file, GDAL_OF_RASTER, "picture"));
+        std::array<double, 6> place{};
+        if (data->GetRasterCount() == 0) return Error{"holds no raster band"};
+        if (data->GetGeoTransform(place.data()) != CE_None) {
+            return Error{"states no position; drop its world file with it, or save it as GeoTIFF"};
+        }
+        const bool values = data->GetRasterBand(1)->GetRasterDataType() != GDT_Byte;
+        if (values && data->GetRasterCount() > 1)
+            return Error{"has several bands of more than 8 bits; save it as a picture of 8 bits per band"};
+        if (values) return coloured_values(*data, ground, limits);
+    }
+    TALUS_ASSIGN(auto photo, read_orthophoto(file, ground.crs, ground.extent, limits.pixels));
+    PictureOverlay made;
+    made.bytes = std::move(photo.bytes);
+    made.type = std::move(photo.type);
+    made.columns = photo.columns;
+    made.rows = photo.rows;
+    return Result<PictureOverlay>(std::move(made));
 }
 
 }  // namespace talus::geo

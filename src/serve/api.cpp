@@ -10,10 +10,11 @@
 namespace talus::serve {
 
 Router make_api(Session& session, Exports& exports, const Ensembles& ensembles, Calibrations& calibrations,
-                Alerts& alerts) {
+                Alerts& alerts, Overlays& overlays) {
     Router router;
     add_session_routes(router, session);
-    add_session_file_route(router, session);
+    add_session_file_route(router, session, overlays);
+    add_overlay_routes(router, overlays);
     add_scenario_routes(router, session, exports);
     add_ensemble_routes(router, ensembles);
     add_calibration_routes(router, session, calibrations);

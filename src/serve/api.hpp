@@ -10,9 +10,10 @@
 namespace talus::serve {
 
 class Alerts;
+class Overlays;
 /// The routes of docs/protocol.md. The arguments must outlive them.
 [[nodiscard]] Router make_api(Session& session, Exports& exports, const Ensembles& ensembles,
-                              Calibrations& calibrations, Alerts& alerts);
+                              Calibrations& calibrations, Alerts& alerts, Overlays& overlays);
 
 class Start;
 /// The routes that need no open session. nullptr: a server of one scene, without a start page.
@@ -24,12 +25,14 @@ class Access;
 void add_share_routes(Router& router, Sharing& sharing, Access& access);
 
 // The parts of it.
-void add_session_file_route(Router& router, Session& session);
+void add_session_file_route(Router& router, Session& session, const Overlays& overlays);
 void add_session_routes(Router& router, Session& session);
 void add_scenario_routes(Router& router, Session& session, Exports& exports);
 void add_ensemble_routes(Router& router, const Ensembles& ensembles);
 void add_calibration_routes(Router& router, Session& session, Calibrations& calibrations);
 void add_alert_routes(Router& router, Alerts& alerts);
+/// Layers that people lay over the terrain.
+void add_overlay_routes(Router& router, Overlays& overlays);
 /// Of the depth-averaged model beside the live runs.
 void add_depth_averaged_routes(Router& router, Session& session, DepthAveraged& model);
 

@@ -1,7 +1,9 @@
 #include <fmt/format.h>
 
 #include "serve/api.hpp"
+#include "serve/library.hpp"
 #include "serve/openapi.hpp"
+#include "serve/overlays.hpp"
 #include "serve/session_file.hpp"
 #include "serve/start.hpp"
 
@@ -124,8 +126,11 @@ Router make_start_api(Start* start) {
     add("DELETE", "/api/recent/{id}", [](Start& s, const Request& request, const Respond& respond) {
         s.forget(request.parameters.at("id"), respond);
     });
-    add("POST", "/api/sessions",
-        [](Start& s, const Request& request, const Respond& respond) { s.save(request, respond); });
+    Route keep{
+        "POST", "/api/sessions", Role::controller,
+        on_start(start, [](Start& s, const Request& request, const Respond& respond) { s.save(request, respond); })};
+    keep.largest_body = Library::longest_session;  // a file of one may come from a browser
+    router.add(std::move(keep));
     add("DELETE", "/api/sessions/{id}", [](Start& s, const Request& request, const Respond& respond) {
         s.remove_saved(request.parameters.at("id"), respond);
     });
@@ -141,15 +146,16 @@ Router make_start_api(Start* start) {
     return router;
 }
 
-void add_session_file_route(Router& router, Session& session) {
-    router.add({"GET", "/api/session/file", Role::viewer, [&session](const Request&, const Respond& respond) {
-                    const std::string title = session.scene()->spec.scene.title;
-                    session.loop().post([respond, title](Scenarios& all) {
-                        Response response = json_response(200, write_session(all, title, title));
-                        response.file_name = "session.json";
-                        respond(response);
-                    });
-                }});
+void add_session_file_route(Router& router, Session& session, const Overlays& overlays) {
+    router.add(
+        {"GET", "/api/session/file", Role::viewer, [&session, &overlays](const Request&, const Respond& respond) {
+             const std::string title = session.scene()->spec.scene.title;
+             session.loop().post([respond, title, laid = overlays.saved()](Scenarios& all) {
+                 Response response = json_response(200, write_session(all, title, title, laid));
+                 response.file_name = "session.json";
+                 respond(response);
+             });
+         }});
 }
 
 }  // namespace talus::serve

@@ -29,6 +29,8 @@ struct ServerContext {
     std::chrono::milliseconds patience;  ///< timeout of a silent connection, or of one that sends its header slowly
     ConnectionCounts connections;
     std::size_t people_limit = 0;  ///< WebSockets at once, at most
+    std::string tile_origins =
+        {};  ///< " https://tile.example.org": from which the page may load pictures, besides here
 };
 
 inline constexpr std::size_t largest_header = 16 * 1024, largest_body = 1024 * 1024, largest_message = 64 * 1024;

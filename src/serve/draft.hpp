@@ -16,6 +16,7 @@
 #include "geo/foreign.hpp"
 #include "geo/raster.hpp"
 #include "geo/repair_raster.hpp"
+#include "geo/zip_archive.hpp"
 #include "scene/new_scene.hpp"
 
 namespace talus::serve {
@@ -81,8 +82,6 @@ class Draft {
         geo::FileKind kind = geo::FileKind::other;
     };
     Draft(std::filesystem::path folder, const UploadLimits& limits) : folder_(std::move(folder)), limits_(limits) {}
-    [[nodiscard]] Result<std::filesystem::path> unpack(const std::string& name, const std::filesystem::path& upload,
-                                                       const std::filesystem::path& to) const;
     [[nodiscard]] Result<Upload> convert(std::string_view role, const std::string& name,
                                          const std::filesystem::path& upload, const std::filesystem::path& to,
                                          const geo::ForeignReader& reader) const;
@@ -102,6 +101,12 @@ class Draft {
     std::optional<geo::Raster> terrain_;
     std::string problem_;  // why the terrain cannot be one
 };
+
+/// The file to read of an upload, somewhere below `to`: itself, or the only one of a ZIP archive that is no companion
+/// of it. Errors: none or several, one that belongs with others, beyond the limits.
+[[nodiscard]] Result<std::filesystem::path> unpack_upload(const std::string& name, const std::filesystem::path& upload,
+                                                          const std::filesystem::path& to,
+                                                          const geo::ZipLimits& limits);
 
 /// A file's name without anything that leads elsewhere: letters, digits, hyphens, and its ending.
 [[nodiscard]] std::string upload_name_of(const std::string& name);

@@ -342,10 +342,11 @@ void HttpConnection::give_file() {
     // Not every browser takes 'self' to mean the WebSocket too. The host is in the list.
     message.set(
         "Content-Security-Policy",
-        fmt::format("default-src 'self'; script-src 'self'; style-src 'self'; connect-src 'self' ws://{0} wss://{0}; "
-                    "img-src 'self' blob: data:; worker-src 'self' blob:; media-src 'self' blob:; object-src 'none'; "
-                    "base-uri 'none'; form-action 'none'; frame-ancestors 'none'",
-                    host));
+        fmt::format(
+            "default-src 'self'; script-src 'self'; style-src 'self'; connect-src 'self' ws://{0} wss://{0}; "
+            "img-src 'self' blob: data:{1}; worker-src 'self' blob:; media-src 'self' blob:; object-src 'none'; "
+            "base-uri 'none'; form-action 'none'; frame-ancestors 'none'",
+            host, context_.tile_origins));
     message.set("Cross-Origin-Opener-Policy", "same-origin");
     write(std::move(message));
 }

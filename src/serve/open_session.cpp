@@ -14,16 +14,20 @@ OpenSession::OpenSession(Thread thread, std::shared_ptr<const scene::Scene> scen
       calibrations(scene, options.calibration,
                    [this](nlohmann::json status) { session.calibration(std::move(status)); }),
       alerts(session, std::move(scene), options.alerts),
-      depth_averaged(session) {}
+      depth_averaged(session),
+      overlays(session, options.export_folder / "overlays", options.reader, options.tiles) {}
 
 Result<OpenSessionPtr> OpenSession::open(Thread thread, const std::shared_ptr<const scene::Scene>& scene,
-                                         const ServerOptions& options, std::vector<OpeningScenario> scenarios) {
+                                         const ServerOptions& options, std::vector<OpeningScenario> scenarios,
+                                         std::vector<Overlay> laid) {
     auto made = std::make_shared<OpenSession>(std::move(thread), scene, options);
     TALUS_ASSIGN(made->ensembles, Ensembles::read(options.ensembles, *scene));
     const auto on_failure = options.on_failure ? options.on_failure : [](const std::string&) {};
     TALUS_TRY(made->session.open(options.scenario, on_failure));
     made->session.calibration(made->calibrations.describe());
-    made->router = make_api(made->session, made->exports, made->ensembles, made->calibrations, made->alerts);
+    made->router =
+        make_api(made->session, made->exports, made->ensembles, made->calibrations, made->alerts, made->overlays);
+    made->overlays.open(std::move(laid));
     add_depth_averaged_routes(made->router, made->session, made->depth_averaged);
     TALUS_TRY(made->alerts.open());
     const auto shared = std::make_shared<std::vector<OpeningScenario>>(std::move(scenarios));
@@ -39,6 +43,7 @@ void OpenSession::close() {
     calibrations.close();
     alerts.close();
     depth_averaged.close();
+    overlays.close();
     session.close();
     exports.close();
 }

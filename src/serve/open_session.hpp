@@ -9,6 +9,7 @@
 #include "serve/depth_averaged.hpp"
 #include "serve/ensembles.hpp"
 #include "serve/exports.hpp"
+#include "serve/overlays.hpp"
 #include "serve/router.hpp"
 #include "serve/session.hpp"
 
@@ -35,7 +36,8 @@ struct OpenSession {
     [[nodiscard]] static Result<std::shared_ptr<OpenSession>> open(Thread thread,
                                                                    const std::shared_ptr<const scene::Scene>& scene,
                                                                    const ServerOptions& options,
-                                                                   std::vector<OpeningScenario> scenarios = {});
+                                                                   std::vector<OpeningScenario> scenarios = {},
+                                                                   std::vector<Overlay> overlays = {});
     /// Ends the threads; requests that wait are not answered. Nobody may use the session any more.
     void close();
 
@@ -45,6 +47,7 @@ struct OpenSession {
     Calibrations calibrations;
     Alerts alerts;
     DepthAveraged depth_averaged;
+    Overlays overlays;
     Router router;
 };
 

@@ -19,6 +19,7 @@
 #include "serve/api.hpp"
 #include "serve/connection.hpp"
 #include "serve/open_session.hpp"
+#include "serve/overlay.hpp"
 #include "serve/sharing.hpp"
 #include "serve/start.hpp"
 
@@ -50,6 +51,16 @@ std::string bracketed(const asio::ip::address& address) {
 /// An address that a browser on this machine can open.
 std::string host_for_links(const asio::ip::address& address) {
     return address.is_unspecified() ? "127.0.0.1" : bracketed(address);
+}
+
+/// Each once, with a space before it.
+std::string tile_origins(const std::vector<std::string>& addresses) {
+    std::string origins;
+    for (const std::string& address : addresses) {
+        const std::string origin = " " + origin_of(address);
+        if ((origins + " ").find(origin + " ") == std::string::npos) origins += origin;
+    }
+    return origins;
 }
 
 }  // namespace
@@ -136,6 +147,7 @@ Server::~Server() = default;
 
 Result<std::unique_ptr<Server>> Server::listen(ServerOptions options) {
     TALUS_TRY(check_tokens(options.tokens));
+    for (const std::string& address : options.tiles) TALUS_TRY(check_tile_address(address));
     auto parts = std::make_unique<Parts>();
     TALUS_TRY(parts->bind(options.host, options.port));
     parts->options = std::move(options);
@@ -151,6 +163,7 @@ Status Server::serve(const std::shared_ptr<const scene::Scene>& scene) {
 
 void Server::start(StartSettings settings) {
     Parts& parts = *parts_;
+    parts.options.reader = settings.reader;
     const std::filesystem::path file = settings.file;
     parts.start.emplace(std::move(settings), parts.options,
                         Start::Host{parts.thread_of_session(), [&parts] { return parts.context->open; },
@@ -167,7 +180,8 @@ void Server::Parts::listen_for(OpenSessionPtr open) {
     context.emplace(
         ServerContext{Access(options.tokens, bracketed(bound.address()), bound.port(), options.allowed_hosts),
                       make_start_api(start ? &*start : nullptr), std::move(open), Site(), options.patience,
-                      ConnectionCounts(connections, per_address > 0 ? per_address : connections / 3), connections / 2});
+                      ConnectionCounts(connections, per_address > 0 ? per_address : connections / 3), connections / 2,
+                      tile_origins(options.tiles)});
     const auto inner =
         bound.address().is_unspecified() ? tcp::endpoint(asio::ip::address_v4::loopback(), bound.port()) : bound;
     sharing.emplace(io, inner, [this](tcp::socket socket) {

@@ -32,7 +32,9 @@ struct ServerOptions {
     std::vector<std::filesystem::path> ensembles;  ///< folders of finished ensembles whose maps are shown
     AlertSettings alerts;                          ///< triggers and alarms; neither unless set
     std::function<void(std::string)> on_failure;   ///< the simulation cannot continue: out of memory; from any thread
-    std::size_t connections_per_address = 0;       ///< at once; 0: a third of what the system allows in all
+    geo::ForeignReader reader{};                   ///< of files that people lay over the terrain
+    std::vector<std::string> tiles;           ///< addresses of map tiles that browsers may load; check_tile_address
+    std::size_t connections_per_address = 0;  ///< at once; 0: a third of what the system allows in all
 };
 
 /// Of a server with a start page.

@@ -86,6 +86,7 @@ void Session::join(Viewer& viewer, Role role, const std::string& name, const std
     }
     if (calibration_) viewer.send(calibration_);
     if (alerts_) viewer.send(alerts_);
+    if (overlays_) viewer.send(overlays_);
     people_changed();
 }
 
@@ -260,6 +261,13 @@ void Session::setup(int scenario, json setup) {
 void Session::calibration(json status) {
     thread_.post([this, text = message_text("calibration", std::move(status))] {
         calibration_ = text;
+        for (const auto& [viewer, view] : viewers_) viewer->send(text);
+    });
+}
+
+void Session::overlays(json list) {
+    thread_.post([this, text = message_text("overlays", std::move(list))] {
+        overlays_ = text;
         for (const auto& [viewer, view] : viewers_) viewer->send(text);
     });
 }

@@ -77,6 +77,8 @@ class Session final : public Watcher {
     /// before open().
     void watch_setups(std::function<void()> changed) { setups_changed_ = std::move(changed); }
 
+    /// Sends the list of layers over the terrain in the same way.
+    void overlays(nlohmann::json list);
     /// Sends the state of triggers and alarms in the same way.
     void alerts(nlohmann::json status);
     /// Who is told, on the server's thread, of the alerts of runs.
@@ -118,7 +120,7 @@ class Session final : public Watcher {
     std::map<Viewer*, View> viewers_;
     std::vector<std::string> names_{"A"};
     std::array<Bytes, Scenarios::max_count> states_, setups_;  // as messages; for those who join
-    Bytes calibration_, alerts_;                               // likewise
+    Bytes calibration_, alerts_, overlays_;                    // likewise
     std::function<void(int, const RunAlerts&)> on_alerts_;
     std::array<Bytes, Scenarios::max_count> depth_averaged_;  // likewise
     std::function<void()> setups_changed_ = [] {};

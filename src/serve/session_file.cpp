@@ -40,7 +40,7 @@ Result<SavedScenario> read_scenario(const json& written) {
 
 }  // namespace
 
-json write_session(Scenarios& all, const std::string& name, const std::string& title) {
+json write_session(Scenarios& all, const std::string& name, const std::string& title, const json& overlays) {
     json scenarios = json::array();
     for (const std::string& letter : all.names()) {
         const int index = *all.find(letter);
@@ -48,11 +48,8 @@ json write_session(Scenarios& all, const std::string& name, const std::string& t
                              {"title", all.setup(index).value("name", "")},
                              {"journal", all.at(index).journal_json()}});
     }
-    return {{"talus_session", session_version},
-            {"name", name},
-            {"title", title},
-            {"saved_at", utc_now()},
-            {"scenarios", scenarios}};
+    return {{"talus_session", session_version}, {"name", name},        {"title", title}, {"saved_at", utc_now()},
+            {"scenarios", scenarios},           {"overlays", overlays}};
 }
 
 Result<SessionFile> read_session(const std::string& text) {
@@ -64,7 +61,7 @@ Result<SessionFile> read_session(const std::string& text) {
         return Error{fmt::format("talus_session = {}: this program reads version {}", written["talus_session"].dump(),
                                  session_version)};
     }
-    TALUS_TRY(twin::check_keys(written, {"talus_session", "name", "title", "saved_at", "scenarios"}));
+    TALUS_TRY(twin::check_keys(written, {"talus_session", "name", "title", "saved_at", "scenarios", "overlays"}));
     SessionFile file;
     TALUS_ASSIGN(file.name, needed_text(written, "name"));
     TALUS_ASSIGN(file.title, needed_text(written, "title"));
@@ -85,7 +82,9 @@ Result<SessionFile> read_session(const std::string& text) {
         file.scenarios.push_back(std::move(*scenario));
     }
     if (file.scenarios[0].index != 0) return Error{"scenarios[0]: the first scenario must be A"};
-    return file;
+    // Sessions did not always have them.
+    TALUS_ASSIGN(file.overlays, read_saved_overlays(written.value("overlays", json())));
+    return Result<SessionFile>(std::move(file));
 }
 
 Result<std::vector<OpeningScenario>> replay_session(const SessionFile& file,

@@ -7,6 +7,7 @@
 
 #include "core/result.hpp"
 #include "serve/open_session.hpp"
+#include "serve/overlay.hpp"
 #include "twin/journal.hpp"
 
 namespace talus::serve {
@@ -22,10 +23,12 @@ struct SavedScenario {
 struct SessionFile {
     std::string name, title;
     std::vector<SavedScenario> scenarios;  ///< the first is A
+    std::vector<Overlay> overlays;
 };
 
-/// As JSON, from the thread that owns the scenarios. `title`: of the scene.
-[[nodiscard]] nlohmann::json write_session(Scenarios& all, const std::string& name, const std::string& title);
+/// As JSON, from the thread that owns the scenarios. `title`: of the scene; `overlays`: as Overlays::saved.
+[[nodiscard]] nlohmann::json write_session(Scenarios& all, const std::string& name, const std::string& title,
+                                           const nlohmann::json& overlays);
 
 /// Errors name scenario, key and value; scenarios of several scenes; no scenario A.
 [[nodiscard]] Result<SessionFile> read_session(const std::string& text);

@@ -197,7 +197,8 @@ void Start::work(const Wanted& wanted) {
     try {
         auto loaded = load(wanted);
         if (!loaded) return end(loaded.error().message);
-        auto made = OpenSession::open(host_.thread, loaded->scene, loaded->options, std::move(loaded->scenarios));
+        auto made = OpenSession::open(host_.thread, loaded->scene, loaded->options, std::move(loaded->scenarios),
+                                      std::move(loaded->overlays));
         if (!made) return end(made.error().message);
         if (stop_) {
             (*made)->close();
@@ -241,7 +242,7 @@ Result<Start::Loaded> Start::load(const Wanted& wanted) {
         return Result<Loaded>(std::move(loaded));
     }
     TALUS_ASSIGN(const auto text, read_whole(wanted.session, Library::longest_session));
-    const auto file = read_session(text);
+    auto file = read_session(text);
     if (!file) return Error{fmt::format("{}: {}", wanted.session.filename().string(), file.error().message)};
     TALUS_ASSIGN(const auto known, scene_of(*file, wanted.any_scene));
     TALUS_ASSIGN(auto loaded, load_scene(known, file->scenarios[0].journal.overrides));
@@ -249,6 +250,7 @@ Result<Start::Loaded> Start::load(const Wanted& wanted) {
                  replay_session(
                      *file, loaded.scene, [this](const std::string& what, double share) { return say(what, share); },
                      loaded.notes));
+    loaded.overlays = std::move(file->overlays);
     return Result<Loaded>(std::move(loaded));
 }
 
@@ -331,9 +333,10 @@ void Start::save(const Request& request, const Respond& respond) {
     }
     const OpenSessionPtr open = host_.open();
     if (!open) return respond(error_response(409, "no scene is open; there is nothing to save"));
-    open->session.loop().post([keep, name, title = open->session.scene()->spec.scene.title](Scenarios& all) {
-        keep(write_session(all, name, title));
-    });
+    open->session.loop().post(
+        [keep, name, title = open->session.scene()->spec.scene.title, laid = open->overlays.saved()](Scenarios& all) {
+            keep(write_session(all, name, title, laid));
+        });
 }
 
 void Start::remove_saved(const std::string& id, const Respond& respond) {

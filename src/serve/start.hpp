@@ -76,6 +76,7 @@ class Start {
         ServerOptions options;
         std::vector<OpeningScenario> scenarios;
         std::vector<std::string> notes;
+        std::vector<Overlay> overlays;
     };
     /// What one of the three names is.
     [[nodiscard]] Result<Wanted> find(const std::string& scene, const std::string& session,

@@ -10,6 +10,7 @@ import { testBarrier } from "./twin/barrier.mjs";
 import { testDepthAveraged } from "./twin/depth_averaged.mjs";
 import { testDrawing } from "./twin/drawing.mjs";
 import { testErosion } from "./twin/erosion.mjs";
+import { testLayers } from "./twin/layers.mjs";
 import { testLook } from "./twin/look.mjs";
 import { testGround } from "./twin/ground.mjs";
 import { testControls } from "./twin/controls.mjs";
@@ -47,7 +48,7 @@ setTimeout(() => {
   process.exit(1);
 }, 1_100_000).unref();
 const run = new Run(browser, resolve(output), command, process.env.TALUS_ONLY);
-const parts = { controls: testControls, readings: testReadings, restart: testRestart, scenarios: testScenarios, barrier: testBarrier, parts: testParts, erosion: testErosion, ground: testGround, look: testLook, photo: testPhoto,
+const parts = { controls: testControls, readings: testReadings, restart: testRestart, scenarios: testScenarios, barrier: testBarrier, parts: testParts, erosion: testErosion, ground: testGround, layers: testLayers, look: testLook, photo: testPhoto,
   backanalysis: testBackanalysis, depth_averaged: testDepthAveraged, drawing: testDrawing, sharing: testSharing, start: testStart, triggers: testTriggers, visible: testVisible };
 try {
   for (const part of (process.env.TALUS_PARTS ?? Object.keys(parts).join()).split(",")) {

@@ -149,6 +149,7 @@ TEST(ServeCommand, says_in_one_line_what_is_wrong) {
     ASSERT_EQ(::listen(file, 1), 0);
     ::getsockname(file, reinterpret_cast<sockaddr*>(&address), &size);
     const std::string port = std::to_string(ntohs(address.sin_port));
+    fails({"slope.toml", "--tiles", "file:///{z}/{x}/{y}"}, 2, "--tiles file:///{z}/{x}/{y}: begins with neither");
     fails({"slope.toml", "--port", port}, 1, "port " + port + " is in use");
     ::close(file);
 }

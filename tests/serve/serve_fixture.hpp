@@ -11,6 +11,7 @@
 #include "cli/small_scene.hpp"
 #include "serve/client.hpp"
 #include "serve/server.hpp"
+#include "support/foreign.hpp"
 
 namespace talus::test {
 
@@ -39,6 +40,8 @@ class Serve : public ::testing::Test {
         options.connections_per_address = connections_per_address_;
         options.allowed_hosts = {"twin.example.org"};
         options.ensembles = ensembles_;
+        options.reader = foreign_reader();
+        options.tiles = tiles_;
         options.calibration.source = {scene_.scene_file(), all};
         options.calibration.folder = scene_.folder();
         options.calibration.keep = keep_;
@@ -63,6 +66,7 @@ class Serve : public ::testing::Test {
 
     SmallScene scene_;
     std::vector<std::filesystem::path> ensembles_;  ///< whose maps are shown
+    std::vector<std::string> tiles_;                ///< addresses of map tiles
     std::size_t connections_per_address_ = 0;
     bool keep_ = false;  ///< what calibrations find
     std::unique_ptr<serve::Server> server_;

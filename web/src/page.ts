@@ -15,6 +15,7 @@ import { help, keys } from "./panels/keys";
 import { legends, scaleAndCompass } from "./panels/legends";
 import { measuring } from "./panels/measuring";
 import { controls } from "./panels/controls";
+import { OverlaysPanel } from "./panels/overlays";
 import { paneNames } from "./panels/pane_names";
 import { people } from "./panels/people";
 import { Picture } from "./panels/picture";
@@ -35,6 +36,7 @@ import { Follow } from "./scene/follow";
 import { frontMarks } from "./scene/front_mark";
 import { isDepthAveragedLayer, isEnsembleLayer } from "./scene/layers";
 import { marks } from "./scene/marks";
+import { OverlayLayers } from "./scene/overlays";
 import { Relief } from "./scene/relief";
 import { ShownLayers } from "./scene/shown_layers";
 import { Sinking } from "./scene/sinking";
@@ -91,6 +93,7 @@ function buildPage(page: HTMLElement, twin: Twin): void {
   const follow = new Follow(twin, stage);
 
   const probes = new Probes(twin);
+  const overlays = new OverlaysPanel(twin, stage, new OverlayLayers(twin, stage));
   const compare = new ComparePanel(twin, picture);
   const secondModel = new DepthAveragedPanel(twin);
   const section = sectionPanel(twin, stage);
@@ -98,6 +101,7 @@ function buildPage(page: HTMLElement, twin: Twin): void {
     { name: "front", title: "Front", content: frontCharts(twin, secondModel.element) },
     { name: "time", title: "Time", content: timeCharts(twin) },
     { name: "points", title: "Points", content: h("div", {}, pinsPanel(twin, stage), probes.element) },
+    { name: "layers", title: "Layers", content: overlays.element },
     { name: "section", title: "Section", content: section.element },
     { name: "impact", title: "Impact", content: impactsPanel(twin, stage) },
     { name: "balance", title: "Balance", content: balance(twin) },
@@ -151,7 +155,7 @@ function buildPage(page: HTMLElement, twin: Twin): void {
     : h("span", { class: "wordmark" }, "talus");
   const key = legends(twin, stage, layers);
   const scale = scaleAndCompass(twin, stage, readOut);
-  const foot = h("div", { class: "view-foot" }, measuring(twin, stage, drawing), followButton(twin, stage, follow), badge("over"));
+  const foot = h("div", { class: "view-foot" }, overlays.card, measuring(twin, stage, drawing), followButton(twin, stage, follow), badge("over"));
   stage.covers = [bar.camera, bar.show, scale, foot, ...frontMarks(twin, stage, follow)];
   // Legends stand below the picture: over it they would hide debris and houses.
   const middle = h("main", { class: "middle" }, triggerBanner(twin), h("div", { class: "view" }, stage.element, bar.camera, bar.show, swipeDivider(twin, stage), scale, foot), key);

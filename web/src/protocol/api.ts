@@ -1,7 +1,7 @@
 // The HTTP half of docs/protocol.md.
 import { decodeFrame, type Frame, type ScenarioName } from "./frame";
 import { decodeGrid, type Grid } from "./grid";
-import type { Action, DepthAveragedComparison, Done, Ensemble, ExportFile, Figure, GaugeReadings, Impacts, LayerName, NewScenario, ProbeSeries, Recording, SceneInfo, Series, Session, Share, WantedShare } from "./messages";
+import type { Action, DepthAveragedComparison, Done, Ensemble, ExportFile, Figure, GaugeReadings, Impacts, LayerName, NewScenario, OverlayData, ProbeSeries, Recording, SceneInfo, Series, Session, Share, Tiles, WantedOverlay, WantedShare } from "./messages";
 import type { Checked, Draft, DraftRole, JobEstimate, JobForm, MendingOfTerrain, StartPage, ValidationCase, WantedJob, WantedScene } from "./start";
 
 /** The server's answer to a request that it refused. */
@@ -112,6 +112,13 @@ export class Api {
   calibrate = async (parameters: { key: string; low: number; high: number }[], runs: number, searchWith: "depth_averaged" | null): Promise<void> =>
     void (await this.ask("POST", "calibration", { parameters, runs, search_with: searchWith }));
   cancelCalibration = async (): Promise<void> => void (await this.ask("DELETE", "calibration"));
+  overlay = (id: string): Promise<OverlayData> => this.json(`overlays/${id}`);
+  overlayPicture = (id: string): Promise<Blob> => this.blob(`overlays/${id}/picture`);
+  tiles = (): Promise<Tiles> => this.json("tiles");
+  addOverlay = (file: File, onshare: (share: number) => void): Promise<Done> => this.upload(`overlays?name=${encodeURIComponent(file.name)}`, file, onshare);
+  changeOverlay = (id: string, wanted: WantedOverlay): Promise<Done> => this.told("POST", `overlays/${id}`, wanted);
+  removeOverlay = (id: string): Promise<Done> => this.told("DELETE", `overlays/${id}`);
+  restoreOverlay = (): Promise<Done> => this.told("POST", "overlays", {});
   start = (): Promise<StartPage> => this.json("start");
   openScene = async (what: { scene?: string; session?: string; ensemble?: string; replace: boolean }): Promise<void> => void (await this.ask("POST", "open", what));
   cancelOpening = async (): Promise<void> => void (await this.ask("DELETE", "open"));

@@ -1230,6 +1230,118 @@ export interface Alerts {
   notes: AlertNote[];
 }
 
+/** A layer that people have laid over the terrain. It takes no part in a run. */
+export interface Overlay {
+  /** In routes. */
+  id: string;
+  /** For people. */
+  name: string;
+  /** Points, lines and areas; or a picture over the terrain. */
+  kind: "vector" | "picture";
+  /** Who added it. */
+  by: string;
+  /** Whether it is shown. */
+  visible: boolean;
+  /** 0 to 1. */
+  opacity: number;
+  /** Of what the file gives no style, as #1f77b4. */
+  colour: string;
+  /** On the terrain. */
+  features: number;
+  /** Features left out, because they lie beside the terrain. */
+  outside: number;
+  /** By the file's own style. */
+  styled: boolean;
+  /** Of a raster of values: that of the darkest colour. */
+  low: number | null;
+  /** That of the brightest. */
+  high: number | null;
+  /** Of its reference system; may be empty. */
+  note: string;
+  /** Of its data. */
+  bytes: number;
+}
+
+/** Layers that people have laid over the terrain. */
+export interface Overlays {
+  /** From bottom to top. */
+  overlays: Overlay[];
+  /** Name of the one that was removed last, which can come back. */
+  removed: string | null;
+  /** Whether GET /api/tiles has addresses. */
+  tiles: boolean;
+  /** That may still come. */
+  bytes_left: number;
+}
+
+/** A layer over the terrain, of a session file. */
+export interface SavedOverlay extends Overlay {
+  /** Of data. */
+  type: "application/json" | "image/png" | "image/webp";
+  /** An OverlayData as text, or a picture in Base64. */
+  data: string;
+}
+
+/** Body of POST /api/overlays/{id}; what is absent stays. */
+export interface WantedOverlay {
+  /** Up to 80 bytes. */
+  name?: string;
+  /** Whether it is shown. */
+  visible?: boolean;
+  /** 1: it hides what is below. */
+  opacity?: number;
+  /** As #1f77b4. */
+  colour?: string;
+}
+
+/** How a feature is drawn, by its file. */
+export interface OverlayStyle {
+  /** Of lines and outlines, as #1f77b4; empty: none. */
+  stroke: string;
+  /** 0 to 1. */
+  stroke_opacity: number;
+  /** Of areas and marks; empty: none. */
+  fill: string;
+  /** 0 to 1. */
+  fill_opacity: number;
+  /** Of lines. */
+  width_px: number;
+  /** Of the mark of a point. */
+  size_px: number;
+}
+
+/** A feature of a layer, cut to the terrain. */
+export interface OverlayFeature {
+  /** Of its parts. */
+  kind: "point" | "line" | "area";
+  /** x, y, x, y, ... in metres from the south-west corner of the terrain; of an area its rings, inside by the even-odd rule. */
+  parts: number[][];
+  /** May be empty. */
+  name: string;
+  /** The others. */
+  attributes: Record<string, string | number>;
+  /** Index into styles; -1: none. */
+  style: number;
+}
+
+/** What is in a layer of points, lines and areas. */
+export interface OverlayData {
+  /** Of features. */
+  styles: OverlayStyle[];
+  /** In the order of the file. */
+  features: OverlayFeature[];
+}
+
+/** Map tiles in Web Mercator that a browser may load. */
+export interface Tiles {
+  /** With {z}, {x} and {y}, or {TileMatrix}, {TileCol} and {TileRow}. */
+  addresses: string[];
+  /** The terrain is divided into so many by so many equal parts. */
+  steps: number;
+  /** Longitude and latitude of their corners on WGS 84, from west to east, then from south to north; empty without an address. */
+  degrees: number[];
+}
+
 /** How other computers reach the server. */
 export interface SharedLink {
   /** Address or name, with the port. */
@@ -1296,6 +1408,7 @@ export type ServerMessage =
   | { type: "people"; people: Person[]; controller: string | null; request: ControlRequest | null }
   | ({ type: "calibration" } & CalibrationStatus)
   | ({ type: "alerts" } & Alerts)
+  | ({ type: "overlays" } & Overlays)
   | ({ type: "depth_averaged" } & DepthAveragedStatus)
   | { type: "scenarios"; scenarios: ScenarioName[] }
   | { type: "ended" }

@@ -1,5 +1,5 @@
 // Made from src/serve/protocol.json: edit that; docs/protocol.md tells how this is made again.
-import type { Journal, Parameter, Point, Role, VariedKey } from "./messages";
+import type { Journal, Parameter, Point, Role, SavedOverlay, VariedKey } from "./messages";
 
 /** A scene that can be opened. */
 export interface KnownScene {
@@ -53,6 +53,8 @@ export interface SessionFile {
   saved_at: string;
   /** In the order of their names. */
   scenarios: SavedScenario[];
+  /** Layers over the terrain, from bottom to top. */
+  overlays?: SavedOverlay[];
 }
 
 /** Body of POST /api/sessions. */

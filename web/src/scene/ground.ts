@@ -151,6 +151,8 @@ export class Ground {
       uPhoto: { value: nothing },
       uPhotoPlacing: { value: new Vector4() },
       uPhotoShown: { value: 0 },
+      uOver: { value: nothing },
+      uOverPlacing: { value: new Vector4() },
       uSunk: { value: nothing },
       uSunkPlacing: { value: new Vector4() },
       uCell: { value: relief.grid.cell },
@@ -203,6 +205,11 @@ export class Ground {
       this.set("uPhotoGain", photo.gain);
     }
     this.set("uPhotoShown", photo ? 1 : 0);
+  }
+  /** Layers of people, above the ground and its photo; null: none. */
+  cover(layers: Draped | null): void {
+    this.set("uOver", layers?.texture ?? nothing);
+    this.set("uOverPlacing", layers?.placing ?? new Vector4());
   }
   /** Where debris has been. */
   layTrail({ texture, placing }: Draped): void {

@@ -50,9 +50,9 @@ const vertexPlace = /* glsl */ `
 export const groundVertex = { head: vertexHead, normal: vertexNormal, place: vertexPlace };
 
 const head = /* glsl */ `
-  uniform sampler2D uGroundRamp, uSurfaceRamp, uLayer, uLayerRamp, uDrawn, uWide, uPhoto;
+  uniform sampler2D uGroundRamp, uSurfaceRamp, uLayer, uLayerRamp, uDrawn, uWide, uPhoto, uOver;
   uniform vec2 uElevation, uLayerRange;
-  uniform vec4 uLayerPlacing, uDrawnPlacing, uWidePlacing, uPhotoPlacing;
+  uniform vec4 uLayerPlacing, uDrawnPlacing, uWidePlacing, uPhotoPlacing, uOverPlacing;
   uniform float uPhotoShown, uOriginZ, uContourInterval, uContour, uSurfaceBySpeed, uSurfaceTop, uLayerOpacity;
   varying float vShade;
   varying vec3 vLocal;
@@ -90,6 +90,8 @@ const colour = /* glsl */ `
       vec4 photo = texture2D(uPhoto, (vLocal.xy - uPhotoPlacing.xy) * uPhotoPlacing.zw);
       ground = mix(ground, photo.rgb * (0.7 + 0.3 * open), photo.a);
     }
+    vec4 over = areaIn(uOver, uOverPlacing);
+    ground = mix(ground, over.rgb * (0.75 + 0.25 * open), over.a);
     vec4 wide = areaIn(uWide, uWidePlacing);
     ground = mix(ground, wide.rgb, wide.a);
     vec4 drawn = areaIn(uDrawn, uDrawnPlacing);

@@ -10,7 +10,7 @@ export interface Label {
   /** Local place. */
   at: Place;
   text: string;
-  kind: "chainage" | "observation" | "release" | "house" | "probe" | "person" | "barrier" | "zone" | "bed" | "inflow" | "gauge" | "section" | "note";
+  kind: "chainage" | "observation" | "release" | "house" | "probe" | "person" | "barrier" | "zone" | "bed" | "inflow" | "gauge" | "section" | "note" | "overlay";
   colour?: string;
   priority: number;
   /** It hangs below its place instead of standing on it. */

@@ -51,6 +51,8 @@ export class ScenarioView {
   /** Lines and handles of the shape being drawn or edited, and marks of people and probes. */
   readonly overlay = new Group();
   extraLabels: Label[] = [];
+  /** Names of features of people's layers. */
+  overlayLabels: Label[] = [];
   namesShown = true;
   /** The ground as it is drawn: that of the scene, lowered by erosion. */
   relief: Relief;
@@ -225,6 +227,7 @@ export class ScenarioView {
     const size = relief.width + relief.height;
     for (const note of this.setup?.notes ?? []) labels.push({ at: relief.local(note.x_m, note.y_m, 0.5), text: shortened(note.name), kind: "note", priority: 9 });
     if (this.namesShown) {
+      labels.push(...this.overlayLabels);
       for (const { chainage, at } of this.chainageMarks()) {
         labels.push({ at: relief.local(at[0], at[1], 1), text: chainage === 0 ? "0 m" : chainage < 20 ? tick(chainage) : `${chainage}`, kind: "chainage", priority: 2, farthest: 1.6 * size });
       }

@@ -3,7 +3,7 @@ import { Api, Refused } from "../protocol/api";
 import { scenarioNames, type Frame, type ScenarioName } from "../protocol/frame";
 import { Live, type Connection } from "../protocol/live";
 import type { ShownLayer } from "../protocol/layers";
-import type { Action, Alerts, CalibrationStatus, DepthAveragedStatus, Done, Ensemble, GaugeReading, GaugeReadings, Impacts, Person, Place, Point, ProbeSeries, SceneInfo, SectionReading, Series, ServerMessage, Session, Setup, State, You } from "../protocol/messages";
+import type { Action, Alerts, CalibrationStatus, DepthAveragedStatus, Done, Ensemble, GaugeReading, GaugeReadings, Impacts, Overlays, Person, Place, Point, ProbeSeries, SceneInfo, SectionReading, Series, ServerMessage, Session, Setup, State, You } from "../protocol/messages";
 import { usualMoment, type Moment } from "../scene/natural/sun";
 import type { StartPage } from "../protocol/start";
 import type { Relief } from "../scene/relief";
@@ -15,6 +15,7 @@ import { usualBed, usualZone, type ZoneSet } from "./ground";
 import { usualHydrograph } from "./inflows";
 import { runKey, runKeys } from "./alerts";
 import { keepFormer } from "./former_session";
+import type { OwnLook } from "./overlays";
 import { stateAt } from "./past";
 
 export interface ScenarioCells {
@@ -87,6 +88,12 @@ export class Twin {
   readonly houseColour = new Cell<HouseColour>("intensity");
   readonly calibration = new Cell<CalibrationStatus | null>(null);
   readonly alerts = new Cell<Alerts | null>(null);
+  /** Layers over the terrain, from bottom to top. */
+  readonly overlays = new Cell<Overlays | null>(null);
+  /** How this person sees layers otherwise than everybody, by id: one who cannot change them for all. */
+  readonly ownOverlays = new Cell<ReadonlyMap<string, OwnLook>>(new Map());
+  /** Address of map tiles below the layers, of this browser alone; null: none. */
+  readonly tileAddress = new Cell<string | null>(null);
   readonly tool = new Cell<Tool>({ kind: "none" });
   readonly selection = new Cell<Selection | null>(null);
   /** Thickness, height and other initial values of the next drawn shape. */
@@ -327,6 +334,9 @@ export class Twin {
         break;
       case "alerts":
         this.hearAlerts(message);
+        break;
+      case "overlays":
+        this.overlays.value = message;
         break;
       case "depth_averaged":
         this.cells[message.scenario].depthAveraged.value = message;

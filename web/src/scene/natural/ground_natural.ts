@@ -153,6 +153,8 @@ const colour = /* glsl */ `
         vec4 photo = texture2D(uPhoto, (vLocal.xy - uPhotoPlacing.xy) * uPhotoPlacing.zw);
         lay(natural, photo.rgb * uPhotoGain, vec2(0.0), 0.0, photo.a);
       }
+      vec4 over = areaIn(uOver, uOverPlacing);
+      lay(natural, over.rgb * 0.5, vec2(0.0), 0.0, over.a);
       layTrail(natural, vLocal.xy);
       layMud(natural, vLocal.xy, n);
     }

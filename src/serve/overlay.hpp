@@ -1,0 +1,53 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include <nlohmann/json.hpp>
+
+#include "core/result.hpp"
+#include "geo/overlay.hpp"
+#include "serve/message.hpp"
+
+namespace talus::serve {
+
+/// A layer that people have laid over the terrain: see geo/overlay.hpp. It is the session's, not a scenario's.
+struct Overlay {
+    std::string id;  ///< "overlay-1"; given by the session
+    std::string name, by;
+    bool picture = false;
+    bool visible = true;
+    double opacity = 1;
+    std::string colour;  ///< "#rrggbb", of what the file gives no style
+    std::size_t features = 0, outside = 0;
+    bool styled = false;
+    bool has_range = false;
+    double low = 0, high = 0;
+    std::string note;
+    std::string type;  ///< of the data: "application/json", "image/png", "image/webp"
+    Bytes data;
+};
+
+/// What a session may hold.
+struct OverlayQuota {
+    std::size_t count = 20, bytes = 24'000'000;  ///< of all data together, as they are sent
+    std::uint64_t upload = std::uint64_t{512} << 20;
+    geo::OverlayLimits layer{};
+};
+
+/// As the page is told, without the data.
+[[nodiscard]] nlohmann::json to_json(const Overlay& overlay);
+
+/// With the data, for a saved session.
+[[nodiscard]] nlohmann::json to_saved(const Overlay& overlay);
+/// Of a saved session, which may come from anybody. Errors name the entry and what is wrong.
+[[nodiscard]] Result<std::vector<Overlay>> read_saved_overlays(const nlohmann::json& written,
+                                                               const OverlayQuota& quota = {});
+
+/// An address of map tiles, with {z}, {x} and {y}, or {TileMatrix}, {TileCol} and {TileRow} of a WMTS in Web Mercator.
+/// Errors: not http or https, other characters in the host, a key that is missing.
+[[nodiscard]] Status check_tile_address(const std::string& address);
+/// "https://tile.example.org", what a Content-Security-Policy names; `address` is one that has been checked.
+[[nodiscard]] std::string origin_of(const std::string& address);
+
+}  // namespace talus::serve
