@@ -30,6 +30,9 @@ void add_scenario_routes(Router& router, Session& session, Exports& exports);
 void add_ensemble_routes(Router& router, const Ensembles& ensembles);
 void add_calibration_routes(Router& router, Session& session, Calibrations& calibrations);
 void add_alert_routes(Router& router, Alerts& alerts);
+class FlowExports;
+/// The moving flow as files.
+void add_flow_routes(Router& router, FlowExports& flows);
 /// Of the depth-averaged model beside the live runs.
 void add_depth_averaged_routes(Router& router, Session& session, DepthAveraged& model);
 

@@ -11,6 +11,7 @@ namespace talus::serve {
 OpenSession::OpenSession(Thread thread, std::shared_ptr<const scene::Scene> scene, const ServerOptions& options)
     : session(std::move(thread), scene, options.tokens),
       exports(session, options.export_folder),
+      flows(session, options.export_folder),
       calibrations(scene, options.calibration,
                    [this](nlohmann::json status) { session.calibration(std::move(status)); }),
       alerts(session, std::move(scene), options.alerts),
@@ -24,6 +25,7 @@ Result<OpenSessionPtr> OpenSession::open(Thread thread, const std::shared_ptr<co
     TALUS_TRY(made->session.open(options.scenario, on_failure));
     made->session.calibration(made->calibrations.describe());
     made->router = make_api(made->session, made->exports, made->ensembles, made->calibrations, made->alerts);
+    add_flow_routes(made->router, made->flows);
     add_depth_averaged_routes(made->router, made->session, made->depth_averaged);
     TALUS_TRY(made->alerts.open());
     const auto shared = std::make_shared<std::vector<OpeningScenario>>(std::move(scenarios));
@@ -41,6 +43,7 @@ void OpenSession::close() {
     depth_averaged.close();
     session.close();
     exports.close();
+    flows.close();
 }
 
 }  // namespace talus::serve

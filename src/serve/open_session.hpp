@@ -9,6 +9,7 @@
 #include "serve/depth_averaged.hpp"
 #include "serve/ensembles.hpp"
 #include "serve/exports.hpp"
+#include "serve/flow_exports.hpp"
 #include "serve/router.hpp"
 #include "serve/session.hpp"
 
@@ -42,6 +43,7 @@ struct OpenSession {
     Ensembles ensembles;
     Session session;
     Exports exports;
+    FlowExports flows;
     Calibrations calibrations;
     Alerts alerts;
     DepthAveraged depth_averaged;
