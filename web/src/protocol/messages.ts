@@ -758,6 +758,42 @@ export interface ExportFiles {
   files: ExportFile[];
 }
 
+/** A format of outputs.series that is made of the recording. */
+export type FlowFormat = "gltf" | "3dtiles" | "geotiff" | "netcdf";
+
+/** A format of the moving flow. */
+export interface FlowFormatOffer {
+  name: FlowFormat;
+  what: string;
+  files: string[];
+  moments: number;
+  bytes: number;
+  refused: string | null;
+}
+
+export interface FlowOffer {
+  scenario: ScenarioName;
+  from_s: number;
+  to_s: number;
+  moments: number;
+  interval_s: number;
+  shortest_interval_s: number;
+  formats: FlowFormatOffer[];
+}
+
+export interface FlowFile {
+  name: string;
+  bytes: number;
+}
+
+export interface FlowExport {
+  state: "idle" | "running" | "cancelling" | "done" | "cancelled" | "failed";
+  scenario: ScenarioName | null;
+  share: number | null;
+  message: string;
+  files: FlowFile[];
+}
+
 /** What talus replay reads: the scene, and the actions with the steps before which they came. */
 export type Journal = object;
 
