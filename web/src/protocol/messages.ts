@@ -456,6 +456,7 @@ export interface Zone extends ZoneValues {
   area_m2: number;
   /** It is of the scene file; false: somebody made it here. */
   from_scene: boolean;
+  blocks?: number[][];
 }
 
 /** Loose material on the ground that debris entrains. */
