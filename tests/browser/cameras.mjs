@@ -1,0 +1,93 @@
+// Debris in five views, at three times and at three sizes, to be looked at: a contact sheet per view, FOLDER/<view>.png, and each picture.
+// Usage: node cameras.mjs TALUS FOLDER [VIEW ...], of the built-in scene, or of the scene file in TALUS_SCENE, in the natural look.
+import { mkdirSync, writeFileSync } from "node:fs";
+import { join } from "node:path";
+import { fileURLToPath } from "node:url";
+import { chromium } from "playwright-core";
+import { Run, startServer, until } from "./twin/harness.mjs";
+
+const [, , talus, folder, ...only] = process.argv;
+const scene = process.env.TALUS_SCENE ?? fileURLToPath(new URL("../../scenes/sham_tseng/scene.toml", import.meta.url));
+const times_s = (process.env.TALUS_TIMES ?? "12,37,90").split(",").map(Number);
+const sizes = [[1440, 900], [1024, 768], [390, 844]];
+mkdirSync(folder, { recursive: true });
+const browser = await chromium.launch({ executablePath: process.env.TALUS_BROWSER ?? "/usr/bin/chromium", args: ["--headless", "--no-sandbox",
+  "--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--ignore-gpu-blocklist", "--no-first-run"] });
+const run = new Run(browser, folder);
+const server = await startServer([talus, "serve", "--json", "--port", "0", "--set", "solver.target_particle_count=5000", scene]);
+
+/** Places beside the flow path: `along` m of chainage, `beside` m to its left, `above` m over the path there. */
+function places({ origin, flow_path }) {
+  const { points, chainage_m } = flow_path;
+  return (along, beside, above) => {
+    const k = Math.min(points.length - 2, Math.max(0, chainage_m.findIndex((c) => c >= along) - 1));
+    const [a, b] = [points[k], points[k + 1]];
+    const t = Math.min(1, Math.max(0, (along - chainage_m[k]) / (chainage_m[k + 1] - chainage_m[k])));
+    const [dx, dy] = [b[0] - a[0], b[1] - a[1]].map((v) => v / Math.hypot(b[0] - a[0], b[1] - a[1]));
+    const at = a.map((v, axis) => v + t * (b[axis] - v) - origin[axis]);
+    return [at[0] - dy * beside, at[1] + dx * beside, at[2] + above];
+  };
+}
+/** A sheet of all pictures of a view: a row per size, a column per time. */
+async function sheet(name, rows) {
+  const page = await browser.newPage({ viewport: { width: 1500, height: 1000 } });
+  const html = rows.map((row) => `<div style="display: flex; gap: 6px; margin-bottom: 6px">${row.map((png) => `<img style="height: 420px" src="data:image/png;base64,${png.toString("base64")}">`).join("")}</div>`).join("");
+  await page.setContent(`<body style="margin: 0; width: max-content">${html}</body>`);
+  await page.waitForFunction(() => [...document.images].every((image) => image.complete));
+  writeFileSync(join(folder, `${name}.png`), await page.locator("body").screenshot());
+  await page.close();
+}
+
+try {
+  const post = (body) => fetch(`${server.base}api/scenarios/A/actions`, { method: "POST", body: JSON.stringify(body), headers: { Authorization: `Bearer ${server.token}`, "Content-Type": "application/json" } });
+  await post({ action: "set_speed", factor: null });
+  await post({ action: "run" });
+  const state = () => server.ask("scenarios/A/state");
+  await until(state, (s) => s.time_s >= Math.max(...times_s) || s.status !== "running", "the run");
+  await post({ action: "pause" });
+  const last_s = (await state()).time_s;
+  const about = await server.ask("scene");
+  const at = places(about);
+  const length = about.flow_path.chainage_m.at(-1);
+  /** A saved view, or the mode of the camera; null: the one that the page begins with. */
+  const views = {
+    first: null,
+    follow: "follow",
+    plan: "plan",
+    uphill: { position: at(length + 30, 25, 25), target: at(0.55 * length, 0, 5) },
+    low: { position: at(0.6 * length, 130, 12), target: at(0.6 * length, 0, 2) },
+  };
+  for (const [name, view] of Object.entries(views)) {
+    if (only.length > 0 && !only.includes(name)) continue;
+    const rows = [];
+    for (const [width, height] of sizes) {
+      const page = await run.open(server.viewer, { width, height, look: "natural", opening: true, touch: width < 720, finest: true,
+        prepare: (page) => page.addInitScript(([key, all]) => localStorage.setItem(key, JSON.stringify(all)), [`talus-views${about.title}`, view?.position ? [view] : []]) });
+      const row = [];
+      for (const time of times_s) {
+        await page.locator(".timeline").evaluate((e, t) => {
+          e.value = t;
+          e.dispatchEvent(new Event("input", { bubbles: true }));
+        }, Math.min(time, last_s));
+        await until(() => page.evaluate(() => window.talusStats.shownTime_s), (t) => Math.abs(t - Math.min(time, last_s)) < 0.5, `${time} s`);
+        // Menus that are hidden on a phone answer as well.
+        if (typeof view === "string") await page.evaluate((mode) => document.querySelector(`.bar.camera [data-mode=${mode}]`).click(), view);
+        else if (view) await page.locator("[aria-label='Saved views']").evaluate((e) => {
+          e.value = "1";
+          e.dispatchEvent(new Event("change", { bubbles: true }));
+        });
+        await run.still(page);
+        const picture = await page.screenshot();
+        writeFileSync(join(folder, `${name}-${width}-${time}.png`), picture);
+        row.push(picture);
+      }
+      await page.context().close();
+      rows.push(row);
+    }
+    await sheet(name, rows);
+    console.log(name);
+  }
+} finally {
+  await server.stop();
+  await browser.close();
+}
