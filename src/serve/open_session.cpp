@@ -11,11 +11,11 @@ namespace talus::serve {
 OpenSession::OpenSession(Thread thread, std::shared_ptr<const scene::Scene> scene, const ServerOptions& options)
     : session(std::move(thread), scene, options.tokens),
       exports(session, options.export_folder),
-      flows(session, options.export_folder),
       calibrations(scene, options.calibration,
                    [this](nlohmann::json status) { session.calibration(std::move(status)); }),
       alerts(session, std::move(scene), options.alerts),
-      depth_averaged(session) {}
+      depth_averaged(session),
+      flows(session, options.export_folder) {}
 
 Result<OpenSessionPtr> OpenSession::open(Thread thread, const std::shared_ptr<const scene::Scene>& scene,
                                          const ServerOptions& options, std::vector<OpeningScenario> scenarios) {

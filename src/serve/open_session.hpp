@@ -43,11 +43,11 @@ struct OpenSession {
     Ensembles ensembles;
     Session session;
     Exports exports;
-    FlowExports flows;
     Calibrations calibrations;
     Alerts alerts;
     DepthAveraged depth_averaged;
     Router router;
+    FlowExports flows;
 };
 
 using OpenSessionPtr = std::shared_ptr<OpenSession>;

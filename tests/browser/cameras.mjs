@@ -1,5 +1,6 @@
 // Debris in five views, at three times and at three sizes, to be looked at: a contact sheet per view, FOLDER/<view>.png, and each picture.
-// Usage: node cameras.mjs TALUS FOLDER [VIEW ...], of the built-in scene, or of the scene file in TALUS_SCENE, in the natural look.
+// Usage: node cameras.mjs TALUS FOLDER [VIEW ...], of the built-in scene, or of the scene file in TALUS_SCENE, in the natural look; TALUS_TIMES, such as 12,37: other times, s;
+// TALUS_FINEST=1: with the whole mesh of the ground, which takes far longer without a graphics card.
 import { mkdirSync, writeFileSync } from "node:fs";
 import { join } from "node:path";
 import { fileURLToPath } from "node:url";
@@ -49,20 +50,15 @@ try {
   const about = await server.ask("scene");
   const at = places(about);
   const length = about.flow_path.chainage_m.at(-1);
-  /** A saved view, or the mode of the camera; null: the one that the page begins with. */
-  const views = {
-    first: null,
-    follow: "follow",
-    plan: "plan",
-    uphill: { position: at(length + 30, 25, 25), target: at(0.55 * length, 0, 5) },
-    low: { position: at(0.6 * length, 130, 12), target: at(0.6 * length, 0, 2) },
-  };
-  for (const [name, view] of Object.entries(views)) {
-    if (only.length > 0 && !only.includes(name)) continue;
-    const rows = [];
-    for (const [width, height] of sizes) {
-      const page = await run.open(server.viewer, { width, height, look: "natural", opening: true, touch: width < 720, finest: true,
-        prepare: (page) => page.addInitScript(([key, all]) => localStorage.setItem(key, JSON.stringify(all)), [`talus-views${about.title}`, view?.position ? [view] : []]) });
+  const saved = [{ position: at(length + 30, 25, 25), target: at(0.55 * length, 0, 5) }, { position: at(0.6 * length, 130, 12), target: at(0.6 * length, 0, 2) }];
+  /** The mode of the camera, or the number of a saved view; null: as the page begins. */
+  const views = { first: null, uphill: "1", low: "2", follow: "follow", plan: "plan" };
+  const wanted = Object.entries(views).filter(([name]) => only.length === 0 || only.includes(name));
+  const rows = Object.fromEntries(wanted.map(([name]) => [name, []]));
+  for (const [width, height] of sizes) {
+    const page = await run.open(server.viewer, { width, height, look: "natural", opening: true, touch: width < 720, finest: process.env.TALUS_FINEST !== undefined,
+      prepare: (page) => page.addInitScript(([key, all]) => localStorage.setItem(key, JSON.stringify(all)), [`talus-views${about.title}`, saved]) });
+    for (const [name, view] of wanted) {
       const row = [];
       for (const time of times_s) {
         await page.locator(".timeline").evaluate((e, t) => {
@@ -71,22 +67,21 @@ try {
         }, Math.min(time, last_s));
         await until(() => page.evaluate(() => window.talusStats.shownTime_s), (t) => Math.abs(t - Math.min(time, last_s)) < 0.5, `${time} s`);
         // Menus that are hidden on a phone answer as well.
-        if (typeof view === "string") await page.evaluate((mode) => document.querySelector(`.bar.camera [data-mode=${mode}]`).click(), view);
-        else if (view) await page.locator("[aria-label='Saved views']").evaluate((e) => {
-          e.value = "1";
+        if (view === "follow" || view === "plan") await page.evaluate((mode) => document.querySelector(`.bar.camera [data-mode=${mode}]`).click(), view);
+        else if (view) await page.locator("[aria-label='Saved views']").evaluate((e, number) => {
+          e.value = number;
           e.dispatchEvent(new Event("change", { bubbles: true }));
-        });
+        }, view);
         await run.still(page);
-        const picture = await page.screenshot();
-        writeFileSync(join(folder, `${name}-${width}-${time}.png`), picture);
-        row.push(picture);
+        row.push(await page.screenshot());
+        writeFileSync(join(folder, `${name}-${width}-${time}.png`), row.at(-1));
+        console.log(`${name}, ${width} x ${height}, ${time} s`);
       }
-      await page.context().close();
-      rows.push(row);
+      rows[name].push(row);
     }
-    await sheet(name, rows);
-    console.log(name);
+    await page.context().close();
   }
+  for (const [name, pictures] of Object.entries(rows)) await sheet(name, pictures);
 } finally {
   await server.stop();
   await browser.close();
