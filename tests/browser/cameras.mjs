@@ -13,9 +13,9 @@ const times_s = (process.env.TALUS_TIMES ?? "12,37,90").split(",").map(Number);
 const sizes = [[1440, 900], [1024, 768], [390, 844]];
 mkdirSync(folder, { recursive: true });
 const browser = await chromium.launch({ executablePath: process.env.TALUS_BROWSER ?? "/usr/bin/chromium", args: ["--headless", "--no-sandbox",
-  "--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--ignore-gpu-blocklist", "--no-first-run"] });
+  "--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--ignore-gpu-blocklist", "--no-first-run", ...(process.env.TALUS_SITE ? ["--disable-features=LocalNetworkAccessChecks"] : [])] });
 const run = new Run(browser, folder);
-const server = await startServer([talus, "serve", "--json", "--port", "0", "--set", "solver.target_particle_count=5000", scene]);
+const server = await startServer([talus, "serve", "--json", "--port", "0", "--set", "solver.target_particle_count=3000", scene]);
 
 /** Places beside the flow path: `along` m of chainage, `beside` m to its left, `above` m over the path there. */
 function places({ origin, flow_path }) {
