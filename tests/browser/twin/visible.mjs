@@ -7,7 +7,7 @@ const times_s = [12, 37, 90];
 /** At least, of the luminance of debris to that of the ground around it, as WCAG 2.2 measures contrast: what it asks of marks of one even colour is 3. */
 const leastContrast = 1.8;
 /** At least, between the mean colours of debris and of the ground just beside it: CIE 1976 L*a*b* (ISO/CIE 11664-4). Two browns of one lightness have less than 10. */
-const leastDifference = 15;
+const leastDifference = 20;
 
 /** CIE76 distance of two colours of bytes, sRGB (IEC 61966-2-1) under D65. */
 function difference(one, other) {
