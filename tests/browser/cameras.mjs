@@ -21,9 +21,10 @@ const server = await startServer([talus, "serve", "--json", "--port", "0", "--se
 function places({ origin, flow_path }) {
   const { points, chainage_m } = flow_path;
   return (along, beside, above) => {
-    const k = Math.min(points.length - 2, Math.max(0, chainage_m.findIndex((c) => c >= along) - 1));
+    const next = chainage_m.findIndex((c) => c >= along);
+    const k = next < 0 ? points.length - 2 : Math.max(0, next - 1);
     const [a, b] = [points[k], points[k + 1]];
-    const t = Math.min(1, Math.max(0, (along - chainage_m[k]) / (chainage_m[k + 1] - chainage_m[k])));
+    const t = Math.max(0, (along - chainage_m[k]) / (chainage_m[k + 1] - chainage_m[k])); // beyond the end straight on
     const [dx, dy] = [b[0] - a[0], b[1] - a[1]].map((v) => v / Math.hypot(b[0] - a[0], b[1] - a[1]));
     const at = a.map((v, axis) => v + t * (b[axis] - v) - origin[axis]);
     return [at[0] - dy * beside, at[1] + dx * beside, at[2] + above];
