@@ -74,8 +74,27 @@ Status Series::add(const run::Frame& frame) {
     return frames_->add(frame, scene_.spec.material.rest_density);
 }
 
-std::vector<std::string> Series::finish(const run::RunResult& result) {
+/// Nearly all of the work of a format is done between the rows that it reads.
+void Series::watch_rows(const Watch& watch) {
+    frames_->watch([this, &watch]() -> Status {
+        const double of_format = to_read_ > 0 ? std::min(1.0, read_++ / to_read_) : 0;
+        const double share =
+            (static_cast<double>(written_) + of_format) / static_cast<double>(scene_.spec.outputs.series.size());
+        return watch(share) ? Status() : Status(Error{"the writing of the series was ended"});
+    });
+}
+
+/// Rows of frames that a format reads: of a drawn one, depth and speed of the frames of its animation.
+double Series::rows_of(const run::RunResult& result, const DebrisSurface* surface) const {
+    const GridGeometry& map = result.observation.maps.peak_depth.geometry;
+    if (surface == nullptr) return static_cast<double>(series_quantities.size() * frames_->times().size()) * map.rows;
+    const GridGeometry& lattice = surface->lattice();
+    return 2.0 * static_cast<double>(surface->animated().size()) * lattice.rows * lattice.cell / map.cell;
+}
+
+std::vector<std::string> Series::finish(const run::RunResult& result, const Watch& watch) {
     if (!frames_) return {};
+    if (watch) watch_rows(watch);
     std::vector<std::string> missing;
     std::optional<DebrisSurface> surface;
     std::string no_surface;
@@ -90,8 +109,11 @@ std::vector<std::string> Series::finish(const run::RunResult& result) {
     for (const SeriesFiles& one : series_files) {
         if (!wants(one.format)) continue;
         const bool drawn = one.format != "netcdf" && one.format != "geotiff";
+        read_ = 0;
+        to_read_ = rows_of(result, drawn && surface ? &*surface : nullptr);
         const Status written = drawn && !surface ? Status(Error{no_surface})
                                                  : write_format(one.format, result, surface ? &*surface : nullptr);
+        ++written_;
         if (written) continue;
         missing.push_back(written.error().message);
         for (const std::string_view name : one.files) {

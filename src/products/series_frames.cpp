@@ -9,6 +9,8 @@
 
 #include <fmt/format.h>
 
+#include "core/try.hpp"
+
 namespace talus::products {
 
 SeriesFrames::~SeriesFrames() {
@@ -51,6 +53,7 @@ Status SeriesFrames::add(const run::Frame& frame, double rest_density) {
 
 Status SeriesFrames::read(std::size_t quantity, std::size_t frame, const GridGeometry& grid, int row,
                           float* values) const {
+    if (watch_) TALUS_TRY(watch_());
     std::fill_n(values, grid.columns, std::numeric_limits<float>::quiet_NaN());
     const auto& [window, offset] = windows_[frame];
     if (window.size() == 0) return {};

@@ -3,6 +3,8 @@
 #include <array>
 #include <cstdio>
 #include <filesystem>
+#include <functional>
+#include <utility>
 #include <vector>
 
 #include "core/grid.hpp"
@@ -35,6 +37,9 @@ class SeriesFrames {
     [[nodiscard]] Status add(const run::Frame& frame, double rest_density);
 
     [[nodiscard]] const std::vector<double>& times() const { return times_; }  ///< s, rising
+    /// Told of every row that is about to be read; its error is that of read().
+    using Watch = std::function<Status()>;
+    void watch(Watch watch) { watch_ = std::move(watch); }
     /// A row of a quantity on a grid of the frames' cells; NaN where there is no debris.
     [[nodiscard]] Status read(std::size_t quantity, std::size_t frame, const GridGeometry& grid, int row,
                               float* values) const;
@@ -52,6 +57,7 @@ class SeriesFrames {
     std::vector<Window> windows_;
     std::vector<float> values_;  ///< of the frame that is added
     long long size_ = 0;
+    Watch watch_;
 };
 
 }  // namespace talus::products

@@ -33,6 +33,9 @@ void add_calibration_routes(Router& router, Session& session, Calibrations& cali
 void add_alert_routes(Router& router, Alerts& alerts);
 /// Layers that people lay over the terrain.
 void add_overlay_routes(Router& router, Overlays& overlays);
+class FlowExports;
+/// The moving flow as files.
+void add_flow_routes(Router& router, FlowExports& flows);
 /// Of the depth-averaged model beside the live runs.
 void add_depth_averaged_routes(Router& router, Session& session, DepthAveraged& model);
 

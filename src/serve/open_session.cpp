@@ -15,7 +15,8 @@ OpenSession::OpenSession(Thread thread, std::shared_ptr<const scene::Scene> scen
                    [this](nlohmann::json status) { session.calibration(std::move(status)); }),
       alerts(session, std::move(scene), options.alerts),
       depth_averaged(session),
-      overlays(session, options.export_folder / "overlays", options.reader, options.tiles) {}
+      overlays(session, options.export_folder / "overlays", options.reader, options.tiles),
+      flows(session, options.export_folder) {}
 
 Result<OpenSessionPtr> OpenSession::open(Thread thread, const std::shared_ptr<const scene::Scene>& scene,
                                          const ServerOptions& options, std::vector<OpeningScenario> scenarios,
@@ -27,6 +28,7 @@ Result<OpenSessionPtr> OpenSession::open(Thread thread, const std::shared_ptr<co
     made->session.calibration(made->calibrations.describe());
     made->router =
         make_api(made->session, made->exports, made->ensembles, made->calibrations, made->alerts, made->overlays);
+    add_flow_routes(made->router, made->flows);
     made->overlays.open(std::move(laid));
     add_depth_averaged_routes(made->router, made->session, made->depth_averaged);
     TALUS_TRY(made->alerts.open());
@@ -46,6 +48,7 @@ void OpenSession::close() {
     overlays.close();
     session.close();
     exports.close();
+    flows.close();
 }
 
 }  // namespace talus::serve

@@ -9,6 +9,7 @@
 #include "serve/depth_averaged.hpp"
 #include "serve/ensembles.hpp"
 #include "serve/exports.hpp"
+#include "serve/flow_exports.hpp"
 #include "serve/overlays.hpp"
 #include "serve/router.hpp"
 #include "serve/session.hpp"
@@ -49,6 +50,7 @@ struct OpenSession {
     DepthAveraged depth_averaged;
     Overlays overlays;
     Router router;
+    FlowExports flows;
 };
 
 using OpenSessionPtr = std::shared_ptr<OpenSession>;

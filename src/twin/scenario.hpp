@@ -28,6 +28,7 @@ namespace talus::twin {
 struct DepthAveragedRun;
 struct Journal;
 struct JournalEntry;
+class RecordedFlow;
 
 /// "ready", "at_rest", "ended", "fault".
 [[nodiscard]] std::string_view phase_name(run::RunPhase phase);
@@ -151,6 +152,8 @@ class Scenario {
     [[nodiscard]] nlohmann::json measures_json() const;
     /// Writes the run so far as `talus run` would, into an existing empty folder.
     [[nodiscard]] std::function<Status(const std::filesystem::path& folder)> products() const;
+    /// The moving flow of the run so far (recorded_flow.hpp). It copies the results.
+    [[nodiscard]] std::shared_ptr<const RecordedFlow> flow() const;
 
     // The depth-averaged model of the present setup, beside this run (depth_averaged.hpp).
 

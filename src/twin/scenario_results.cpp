@@ -15,6 +15,7 @@
 #include "run/run_scene.hpp"
 #include "twin/json_keys.hpp"
 #include "twin/past_maps.hpp"
+#include "twin/recorded_flow.hpp"
 #include "twin/scenario_parts.hpp"
 
 // What a scenario has to show: layers of the map, figures, the products of a run.
@@ -155,6 +156,17 @@ std::function<Status(const std::filesystem::path&)> Scenario::products() const {
     return [outcome = parts_->outcome(), changed = std::move(changed)](const std::filesystem::path& folder) {
         return products::write_products(outcome.first, outcome.second, folder, {}, changed);
     };
+}
+
+std::shared_ptr<const RecordedFlow> Scenario::flow() const {
+    const LiveRun& run = *parts_->run;
+    std::vector<FramePtr> frames = run.recording().frames();
+    // Between two frames of the recording, or at its end.
+    if (frames.empty() || frames.back()->time < run.summary().time) frames.push_back(run.frame(1, 0));
+    auto [scene, result] = parts_->outcome();
+    const observe::MapAccumulator& maps = run.observer().maps();
+    return std::make_shared<const RecordedFlow>(std::move(scene), std::move(result), std::move(frames), maps.geometry(),
+                                                maps.thinnest_depth(), parts_->options.frame_interval);
 }
 
 }  // namespace talus::twin

@@ -9,6 +9,7 @@
 #include "twin/scenario_parts.hpp"
 #include "twin/section_values.hpp"
 #include "twin/setup_file.hpp"
+#include "twin/zone_blocks.hpp"
 
 namespace talus::twin {
 namespace {
@@ -17,13 +18,19 @@ using nlohmann::json;
 
 constexpr std::size_t longest_table = 200;  // rows that are still readable
 
-json zone_json(const ZoneSetup& zone) {
+json zone_json(const ZoneSetup& zone, const GridGeometry& terrain) {
     json entry = values_json(zone.body->spec);
     entry["id"] = zone.id;
     entry["name"] = zone.body->spec.name;
     entry["polygons"] = polygons_json(zone.body->outline);
     entry["area_m2"] = zone.area;
     entry["from_scene"] = zone.scene_index >= 0;
+    if (zone.body->spec.stem_density > 0 && zone.body->cells != nullptr) {
+        json& blocks = entry["blocks"] = json::array();
+        for (const Extent& block : blocks_of(*zone.body, terrain)) {
+            blocks.push_back({block.x_min, block.y_min, block.width(), block.height()});
+        }
+    }
     return entry;
 }
 
@@ -138,7 +145,8 @@ json Scenario::setup_json() const {
     for (const BarrierSetup& barrier : setup.barriers) barriers.push_back(barrier_json(barrier));
     for (const BuildingSetup& building : setup.buildings) buildings.push_back(building_json(building));
     json zones = json::array(), beds = json::array(), inflows = json::array();
-    for (const ZoneSetup& zone : setup.zones) zones.push_back(zone_json(zone));
+    const GridGeometry& terrain = p.scene->terrain.elevation().geometry;
+    for (const ZoneSetup& zone : setup.zones) zones.push_back(zone_json(zone, terrain));
     for (const BedSetup& bed : setup.beds) {
         json entry = bed_json(bed);
         entry["in_force"] = in_force(bed, p.run->begun_with().beds);

@@ -129,6 +129,7 @@ TEST_F(OpenApi, every_route_answers_as_described) {
         {"/api/share", {{"address", "192.0.2.1"}}},
         {"/api/scenarios", {{"copy_of", "A"}}},
         {"/api/depth_averaged", {{"on", true}}},
+        {"/api/scenarios/{s}/flow", {{"formats", {"gltf"}}}},
         {"/api/calibration",
          {{"parameters", {{{"key", "material.friction_coefficient"}, {"low", 0.1}, {"high", 0.6}}}}, {"runs", 9}}}};
     const std::map<std::string, int> refused = {{"/api/control", 409},
@@ -157,6 +158,7 @@ TEST_F(OpenApi, every_route_answers_as_described) {
                                                 {"/api/jobs/{id}/resume", 409},
                                                 {"/api/reports/{ticket}", 404},
                                                 {"/api/quit", 409},  // this server has no start page
+                                                {"/api/flow/{name}", 404},
                                                 {"/api/scenarios/{s}/depth_averaged/layers/{name}", 404},
                                                 {"/api/scenarios/{s}/depth_averaged/comparison", 404}};  // off
     for (const serve::Route& route : server_->routes()) {

@@ -28,6 +28,13 @@ describe("trees", () => {
     }
     expect(treesOf(setup([forest(0.05)]), flat)).toEqual(trees);
   });
+  it("stand in the blocks of a zone from a raster, as in outlines of the same ground", () => {
+    const blocks = [[0, 0, 100, 40], [0, 40, 40, 20], [60, 40, 40, 20], [0, 60, 100, 40]];
+    const raster = { ...(forest(0.05) as object), polygons: [], blocks };
+    const places = (zone: unknown): string[] => treesOf(setup([zone]), flat).map(({ x, y }) => `${x} ${y}`);
+    expect(places(raster)).toEqual(places(forest(0.05)));
+    expect(places({ ...raster, blocks: [] })).toEqual([]);
+  });
   it("stay where they are as the zone grows", () => {
     const larger = new Set(treesOf(setup([forest(0.05, 140)]), flat).map(({ x, y }) => `${x} ${y}`));
     expect(treesOf(setup([forest(0.05)]), flat).every(({ x, y }) => within(x, y, 40, 40, 20) || larger.has(`${x} ${y}`))).toBe(true);

@@ -33,6 +33,33 @@ async function readPast(page, server, last) {
   assert.ok(time < last);
 }
 
+/** In the open dialog of exports: the moving flow as one file, then several as a ZIP. */
+async function exportFlow(page, server) {
+  const flow = page.locator("dialog .flow-export");
+  const summary = flow.locator(".flow-summary");
+  await until(() => summary.textContent(), (text) => /^\d+ moments from 0\.0 to [\d.]+ s, 1\.0 s apart; about [\d.]+\s(kB|MB)\.$/.test(text), "what it will contain");
+  await flow.getByLabel("Seconds between moments").fill("2");
+  await flow.getByLabel("Seconds between moments").press("Tab");
+  await until(() => summary.textContent(), (text) => /, 2\.0 s apart/.test(text), "fewer moments");
+  await flow.locator("button:has-text('Write files')").click();
+  const one = flow.locator("button:has-text('Save run.glb')");
+  await one.waitFor();
+  assert.match(await flow.locator(".flow-told").textContent(), /^Written: run\.glb, /);
+  const glb = await saved(page, () => one.click());
+  assert.match(glb.name, /-A\.glb$/);
+  assert.equal(glb.bytes.subarray(0, 4).toString(), "glTF");
+  const described = JSON.parse(glb.bytes.subarray(20, 20 + glb.bytes.readUInt32LE(12)).toString());
+  const { moments } = await server.ask("scenarios/A/flow?interval_s=2");
+  assert.equal(described.meshes.filter(({ name }) => name.startsWith("debris")).length, moments);
+  await flow.locator("label:has-text('3D Tiles') input").check();
+  await flow.locator("button:has-text('Write files')").click();
+  const both = flow.locator("button:has-text('Save 2 files as ZIP')");
+  await both.waitFor();
+  const members = unzipped((await saved(page, () => both.click())).bytes);
+  assert.deepEqual(Object.keys(members).sort(), ["run.glb", "tileset.json"]);
+  assert.equal(JSON.parse(members["tileset.json"].toString()).root.content.uri, "run.glb");
+}
+
 export async function testReadings(run) {
   // It ends by itself at the same time on every machine.
   const server = await run.start(["--set", "solver.end_time_s=12"]);
@@ -300,6 +327,7 @@ export async function testReadings(run) {
     assert.equal(members["front.csv"].toString(), await server.text("scenarios/A/exports/front.csv"), "the file of the server");
     assert.ok(JSON.parse(members["journal.json"].toString()));
     assert.equal(members["view.png"].subarray(1, 4).toString(), "PNG");
+    await exportFlow(page, server);
     await page.keyboard.press("Escape");
     assert.equal(await page.locator("dialog[open]").count(), 0);
     const picture = await saved(page, () => page.click("[aria-label='Picture']"));

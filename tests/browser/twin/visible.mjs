@@ -6,6 +6,20 @@ import { assert, boxOf, inControl, until } from "./harness.mjs";
 const times_s = [12, 37, 90];
 /** At least, of the luminance of debris to that of the ground around it, as WCAG 2.2 measures contrast: what it asks of marks of one even colour is 3. */
 const leastContrast = 1.8;
+/** At least, between the mean colours of debris and of the ground just beside it: CIE 1976 L*a*b* (ISO/CIE 11664-4). Two browns of one lightness have less than 10. */
+const leastDifference = 20;
+
+/** CIE76 distance of two colours of bytes, sRGB (IEC 61966-2-1) under D65. */
+function difference(one, other) {
+  const lab = (bytes) => {
+    const [r, g, b] = bytes.map((v) => (v / 255 <= 0.04045 ? v / 255 / 12.92 : ((v / 255 + 0.055) / 1.055) ** 2.4));
+    const xyz = [(0.4124 * r + 0.3576 * g + 0.1805 * b) / 0.9505, 0.2126 * r + 0.7152 * g + 0.0722 * b, (0.0193 * r + 0.1192 * g + 0.9505 * b) / 1.089];
+    const [x, y, z] = xyz.map((t) => (t > (6 / 29) ** 3 ? Math.cbrt(t) : t / (3 * (6 / 29) ** 2) + 4 / 29));
+    return [116 * y - 16, 500 * (x - y), 200 * (y - z)];
+  };
+  const [a, b] = [lab(one), lab(other)];
+  return Math.hypot(...a.map((v, k) => v - b[k]));
+}
 
 /**
  * Debris in a picture, against one from the same place before it came: the pixels that became clearly darker, and the ground within 12 pixels of
@@ -30,7 +44,7 @@ async function debrisIn([before, after]) {
   const near = new Uint8Array(width * height);
   const reach = 12;
   const debris = { count: 0, light: 0, red: 0, green: 0, blue: 0 };
-  const ground = { count: 0, light: 0 };
+  const ground = { count: 0, light: 0, red: 0, green: 0, blue: 0 };
   for (let k = 0; k < width * height; ++k) {
     if (!dark[k]) continue;
     ++debris.count;
@@ -45,10 +59,14 @@ async function debrisIn([before, after]) {
     if (!near[k] || changed[k]) continue;
     ++ground.count;
     ground.light += light(b.data, k);
+    ground.red += b.data[4 * k];
+    ground.green += b.data[4 * k + 1];
+    ground.blue += b.data[4 * k + 2];
   }
   const [mud, around] = [debris.light / debris.count, ground.light / ground.count];
   return { pixels: debris.count, share: debris.count / (width * height), contrast: (around + 0.05) / (mud + 0.05), mud, around,
-    colour: [debris.red, debris.green, debris.blue].map((sum) => Math.round(sum / debris.count)) };
+    colour: [debris.red, debris.green, debris.blue].map((sum) => Math.round(sum / debris.count)),
+    beside: [ground.red, ground.green, ground.blue].map((sum) => Math.round(sum / ground.count)) };
 }
 
 /** Shows a time of the recording. */
@@ -93,10 +111,12 @@ export async function testVisible(run) {
         const { png } = await run.still(page, box);
         await run.shot(page, `70-${width}-${time}`);
         const found = await page.evaluate(debrisIn, [before, png.toString("base64")]);
-        const told = `${time} s: ${JSON.stringify(found)}`;
+        const deltaE = difference(found.colour, found.beside);
+        const told = `${time} s: difference of colour ${deltaE.toFixed(1)}, ${JSON.stringify(found)}`;
         console.log(`        ${told}`);
         assert.ok(found.share > most, `too little of it, ${told}`);
         assert.ok(found.contrast > leastContrast, `too faint, ${told}`);
+        assert.ok(deltaE >= leastDifference, `too alike, ${told}`);
         const [red, green, blue] = found.colour;
         assert.ok(red > green && green > blue, `not brown, ${told}`);
       }

@@ -8,6 +8,7 @@ import { button, h } from "../ui/dom";
 import { dialog, openDialog } from "../ui/dialog";
 import type { Stage } from "../scene/stage";
 import { briefingButton } from "./briefing";
+import { flowExport } from "./flow_export";
 import { save } from "../ui/save";
 import type { Picture } from "./picture";
 
@@ -34,7 +35,11 @@ const usual = new Set(["report.html", "front.csv", "run_out.csv", "buildings.csv
 async function open(twin: Twin, picture: Picture): Promise<void> {
   const scenario = twin.edited.value;
   let files: ExportFile[] = [];
-  if (!(await twin.attempt(async () => void (files = await twin.api.exports(scenario))))) return;
+  let flow: HTMLElement | null = null;
+  if (!(await twin.attempt(async () => {
+    files = await twin.api.exports(scenario);
+    flow = await flowExport(twin, scenario, picture.fileName);
+  }))) return;
   const offers: Offer[] = [
     ...files.map((f): Offer => ({ name: f.name, what: f.what, bytes: f.bytes, get: () => twin.api.exported(scenario, f.name) })),
     { name: "journal.json", what: "Every action with its step: a replay ends in the same state", bytes: null, get: () => twin.api.journal(scenario) },
@@ -64,7 +69,7 @@ async function open(twin: Twin, picture: Picture): Promise<void> {
   openDialog(dialog(`Export scenario ${scenario}`, h("p", { class: "hint" }, "The files contain the run up to now, as talus run writes them."),
     files.length === 0 ? h("p", { class: "hint" }, "No results yet: run the simulation first.") : null,
     h("div", { class: "row" }, h("label", { class: "check grow" }, all, "All files"), control),
-    h("table", { class: "plain exports" }, h("tbody", {}, ...rows.map((row) => row.element)))));
+    h("table", { class: "plain exports" }, h("tbody", {}, ...rows.map((row) => row.element))), flow));
 }
 
 /** One after the other: the server writes a run's files once. */

@@ -1,7 +1,7 @@
 // The HTTP half of docs/protocol.md.
 import { decodeFrame, type Frame, type ScenarioName } from "./frame";
 import { decodeGrid, type Grid } from "./grid";
-import type { Action, DepthAveragedComparison, Done, Ensemble, ExportFile, Figure, GaugeReadings, Impacts, LayerName, NewScenario, OverlayData, ProbeSeries, Recording, SceneInfo, Series, Session, Share, Tiles, WantedOverlay, WantedShare } from "./messages";
+import type { Action, DepthAveragedComparison, Done, Ensemble, ExportFile, Figure, FlowExport, FlowFormat, FlowOffer, GaugeReadings, Impacts, LayerName, NewScenario, OverlayData, ProbeSeries, Recording, SceneInfo, Series, Session, Share, Tiles, WantedOverlay, WantedShare } from "./messages";
 import type { Checked, Draft, DraftRole, JobEstimate, JobForm, MendingOfTerrain, StartPage, ValidationCase, WantedJob, WantedScene } from "./start";
 
 /** The server's answer to a request that it refused. */
@@ -101,6 +101,12 @@ export class Api {
     this.json(`scenarios/${s}/probe?x_m=${x.toFixed(2)}&y_m=${y.toFixed(2)}`);
   exports = async (s: ScenarioName): Promise<ExportFile[]> => (await this.json<{ files: ExportFile[] }>(`scenarios/${s}/exports`)).files;
   exported = (s: ScenarioName, name: string): Promise<Blob> => this.blob(`scenarios/${s}/exports/${name}`);
+  /** The moving flow as files: what there would be, how far they are. */
+  flowOffer = (s: ScenarioName, interval_s: number | null): Promise<FlowOffer> => this.json(`scenarios/${s}/flow${interval_s === null ? "" : `?interval_s=${interval_s}`}`);
+  startFlow = (s: ScenarioName, formats: FlowFormat[], interval_s: number): Promise<FlowExport> => this.told("POST", `scenarios/${s}/flow`, { formats, interval_s });
+  flow = (): Promise<FlowExport> => this.json("flow");
+  cancelFlow = (): Promise<FlowExport> => this.told("DELETE", "flow");
+  flowFile = (name: string): Promise<Blob> => this.blob(`flow/${name}`);
   journal = (s: ScenarioName): Promise<Blob> => this.blob(`scenarios/${s}/journal`);
 
   act = (s: ScenarioName, action: Action): Promise<Done> =>

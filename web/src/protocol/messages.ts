@@ -466,6 +466,8 @@ export interface Zone extends ZoneValues {
   area_m2: number;
   /** It is of the scene file; false: somebody made it here. */
   from_scene: boolean;
+  /** Where the stems of a zone from a raster are: west, south, width and height of rectangles, m. */
+  blocks?: number[][];
 }
 
 /** Loose material on the ground that debris entrains. */
@@ -780,6 +782,72 @@ export interface ExportFile {
 export interface ExportFiles {
   /** Those that there can be. */
   files: ExportFile[];
+}
+
+/** A format of outputs.series that is made of the recording. */
+export type FlowFormat = "gltf" | "3dtiles" | "geotiff" | "netcdf";
+
+/** A format of the moving flow. */
+export interface FlowFormatOffer {
+  /** As in outputs.series. */
+  name: FlowFormat;
+  /** For people. */
+  what: string;
+  /** Their names. */
+  files: string[];
+  /** In the files; an animation has 100 at most. */
+  moments: number;
+  /** About how large the files are together. */
+  bytes: number;
+  /** Why this run cannot have it. */
+  refused: string | null;
+}
+
+/** What files of the moving flow would contain. */
+export interface FlowOffer {
+  /** Its name. */
+  scenario: ScenarioName;
+  /** The first moment. */
+  from_s: number;
+  /** The last moment, which is now. */
+  to_s: number;
+  /** Of the recording, at this interval. */
+  moments: number;
+  /** Simulated time between them. */
+  interval_s: number;
+  /** That of the recording. */
+  shortest_interval_s: number;
+  /** All there are. */
+  formats: FlowFormatOffer[];
+}
+
+/** Body of POST /api/scenarios/{s}/flow. */
+export interface WantedFlow {
+  /** At least one. */
+  formats: FlowFormat[];
+  /** Simulated time between moments, 0.001 to 1e7; default: outputs.series_interval_s of the scene. */
+  interval_s?: number;
+}
+
+/** A file of the moving flow. */
+export interface FlowFile {
+  /** Of the file. */
+  name: string;
+  /** Its size. */
+  bytes: number;
+}
+
+/** Files of the moving flow: how far they are. */
+export interface FlowExport {
+  state: "idle" | "running" | "cancelling" | "done" | "cancelled" | "failed";
+  /** Whose flow; null: none yet. */
+  scenario: ScenarioName | null;
+  /** That is written, 0 to 1, while it runs. */
+  share: number | null;
+  /** Why it failed; empty. */
+  message: string;
+  /** Once it is done. */
+  files: FlowFile[];
 }
 
 /** What talus replay reads: the scene, and the actions with the steps before which they came. */

@@ -72,6 +72,14 @@ export class DepthField {
     this.uniforms.uDepth0.value = this.windows[0].texture;
     this.uniforms.uDepth1.value = this.windows[1].texture;
   }
+  /** Of the newest frame, m, in the cell that a local place lies in. */
+  depthAt(x: number, y: number): number {
+    const { placing, texture } = this.windows[this.newest];
+    const { width, height, data } = texture.image as { width: number; height: number; data: Float32Array };
+    const column = Math.floor((x - placing.x) * placing.z * width);
+    const row = Math.floor((y - placing.y) * placing.w * height);
+    return column >= 0 && row >= 0 && column < width && row < height && placing.z > 0 ? data[2 * (row * width + column)] : 0;
+  }
   /** fraction: 0 the older frame, 1 the newest. */
   mix(fraction: number): void {
     this.uniforms.uDepthMix.value = this.newest === 1 ? fraction : 1 - fraction;

@@ -1,11 +1,11 @@
 // All graphics of one scenario.
 import {
-  Box3, Color, Group, Scene, Vector3, type BufferGeometry, type Camera, type Mesh, type MeshLambertMaterial, type Raycaster, type Texture,
+  Box3, Color, Group, PerspectiveCamera, Scene, Vector3, type BufferGeometry, type Camera, type Mesh, type MeshLambertMaterial, type Raycaster, type Texture,
 } from "three";
 import type { Line2 } from "three/examples/jsm/lines/Line2.js";
 import { recycle, type Frame, type ScenarioName } from "../protocol/frame";
 import type { Grid } from "../protocol/grid";
-import type { Impacts, SceneInfo, Setup } from "../protocol/messages";
+import type { Impacts, Place, SceneInfo, Setup } from "../protocol/messages";
 import { Debris } from "./debris";
 import { DepthField } from "./depth_field";
 import { DrawnAreas, type Area } from "./drawn_areas";
@@ -70,6 +70,8 @@ export class ScenarioView {
   private readonly wideAreas: DrawnAreas;
   private setup: Setup | null = null;
   private readonly sunInView = new Vector3();
+  private readonly veiledFrom = new Vector3();
+  private debrisMoved = true;
   shadowsDue = true;
 
   constructor(readonly name: ScenarioName, private readonly shared: Shared) {
@@ -137,6 +139,7 @@ export class ScenarioView {
     const joins = this.clock.push(frame, now_ms);
     this.debris.push(frame, previous ?? frame, joins);
     this.depths.push(frame, joins);
+    this.debrisMoved = true;
   }
 
   setSetup(setup: Setup): void {
@@ -277,10 +280,20 @@ export class ScenarioView {
     const { uNatural, uDetail } = this.shared.daylight.uniforms;
     this.rocks.show(uNatural.value > 0, uNatural.value > 0 && uDetail.value > 0);
     this.trees.show(uNatural.value > 0, uDetail.value);
+    const veiling = this.veilTrees(camera);
     this.ground.uniforms.uFlowTime.value = this.clock.time_s(now_ms) ?? 0;
     this.sunInView.copy(this.sky.towards).transformDirection(camera.matrixWorldInverse);
     this.debris.prepare(pixels, this.sunInView, fastest_mps);
-    return fraction < 1;
+    return fraction < 1 || veiling;
+  }
+  /** True while there are trees to be looked at. */
+  private veilTrees(camera: Camera): boolean {
+    const moved = this.debrisMoved || camera.position.distanceTo(this.veiledFrom) > 0.5;
+    if (moved) this.veiledFrom.copy(camera.position);
+    this.debrisMoved = false;
+    const eye: Place | null = camera instanceof PerspectiveCamera ? camera.position.toArray() : null;
+    const { origin } = this.relief;
+    return this.trees.veil(eye, { ground: (x, y) => this.relief.at(x + origin[0], y + origin[1]) - origin[2], depth: (x, y) => this.depths.depthAt(x, y) }, moved);
   }
   dispose(): void {
     for (const child of [...this.solids.children]) disposeSolid(child as Group);

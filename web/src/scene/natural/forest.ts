@@ -66,24 +66,46 @@ function holdsTrees(relief: Relief, x: number, y: number): boolean {
   return relief.hasGround(x, y) && Math.hypot(relief.at(x + e, y) - relief.at(x - e, y), relief.at(x, y + e) - relief.at(x, y - e)) / (2 * e) < steepest;
 }
 
+/** Whether a place lies in a zone: in its outlines or, of one from a raster, in its blocks. */
+type Area = (x: number, y: number) => boolean;
+
+const bucket_m = 32;
+function areaOf({ polygons, blocks = [] }: Planted["zones"][number]): Area {
+  if (polygons.length > 0) return (x, y) => within(polygons, x, y);
+  const rows = new Map<number, number[][]>();
+  for (const block of blocks) {
+    for (let row = Math.floor(block[1] / bucket_m); row * bucket_m < block[1] + block[3]; ++row) {
+      const there = rows.get(row);
+      if (there) there.push(block);
+      else rows.set(row, [block]);
+    }
+  }
+  return (x, y) => rows.get(Math.floor(y / bucket_m))?.some(([west, south, wide, high]) => x >= west && y >= south && x < west + wide && y < south + high) ?? false;
+}
+/** The corners of a zone's outlines or blocks. */
+const cornersOf = ({ polygons, blocks = [] }: Planted["zones"][number]): readonly (readonly number[])[] =>
+  [...polygons.flatMap((rings) => rings[0] ?? []), ...blocks.flatMap(([x, y, wide, high]) => [[x, y], [x + wide, y + high]])];
+
 /** Stems on a jittered grid whose cells are as large as the ground that a tree has. */
 export function treesOf(setup: Planted, relief: Relief, most = mostTrees): Tree[] {
-  const forests = setup.zones.filter((zone) => zone.stem_density_pm2 > 0 && zone.polygons.length > 0);
+  const forests = setup.zones.filter((zone) => zone.stem_density_pm2 > 0 && zone.polygons.length + (zone.blocks?.length ?? 0) > 0);
   if (forests.length === 0) return [];
   const obstacles = new Obstacles(setup);
   const wanted = forests.reduce((sum, zone) => sum + zone.area_m2 * zone.stem_density_pm2, 0);
   const thinned = Math.min(1, most / Math.max(1, wanted));
   const { west, south } = relief.grid;
   const trees: Tree[] = [];
+  const areas = forests.map(areaOf);
   forests.forEach((zone, which) => {
     // Where forests overlap the later one counts, as in the model.
-    const later = forests.slice(which + 1).map(({ polygons }) => polygons);
+    const later = areas.slice(which + 1);
+    const corners = cornersOf(zone);
     const step = 1 / Math.sqrt(zone.stem_density_pm2 * thinned);
     const height = Math.min(28, Math.max(3, slenderness * zone.stem_diameter_m));
     const widest = Math.min(0.26 * height, 0.62 / Math.sqrt(zone.stem_density_pm2));
     const range = (axis: 0 | 1, low: number, size: number): [number, number] => {
-      const all = zone.polygons.flatMap((rings) => (rings[0] ?? []).map((p) => p[axis]));
-      return [Math.floor(Math.max(low, Math.min(...all)) / step), Math.min(low + size, Math.max(...all)) / step];
+      const [least, greatest] = corners.reduce(([a, b], p) => [Math.min(a, p[axis]), Math.max(b, p[axis])], [Infinity, -Infinity]);
+      return [Math.floor(Math.max(low, least) / step), Math.min(low + size, greatest) / step];
     };
     const [[left, right], [low, high]] = [range(0, west, relief.width), range(1, south, relief.height)];
     for (let j = low; j <= high; ++j) {
@@ -91,7 +113,7 @@ export function treesOf(setup: Planted, relief: Relief, most = mostTrees): Tree[
         const x = (i + scattered(i, j, 1)) * step;
         const y = (j + scattered(i, j, 2)) * step;
         const crown = widest * (0.8 + 0.5 * scattered(i, j, 4));
-        if (!within(zone.polygons, x, y) || later.some((polygons) => within(polygons, x, y))) continue;
+        if (!areas[which](x, y) || later.some((area) => area(x, y))) continue;
         if (!holdsTrees(relief, x, y) || !obstacles.leave(x, y, clearance * crown)) continue;
         trees.push({ x, y, height: (0.65 + 0.5 * scattered(i, j, 3)) * height, crown, number: i * 7919 + j });
       }

@@ -1,0 +1,30 @@
+// Files of the moving flow: what they will contain, and how far they are.
+import type { FlowExport, FlowFormat, FlowOffer } from "../protocol/messages";
+import { bytes, fixed, percent } from "./format";
+
+export const flowTitles: Record<FlowFormat, string> = { gltf: "glTF animation", "3dtiles": "3D Tiles", geotiff: "GeoTIFF maps", netcdf: "NetCDF maps" };
+
+/** What is chosen, in one sentence: moments, times, about how large. */
+export function flowSummary(offer: FlowOffer, chosen: readonly FlowFormat[]): string {
+  const formats = offer.formats.filter((format) => chosen.includes(format.name));
+  if (formats.length === 0) return "Choose at least one format.";
+  // glTF and 3D Tiles share their largest file.
+  const drawn = formats.filter((format) => format.files.includes("run.glb"));
+  const maps = formats.filter((format) => !format.files.includes("run.glb"));
+  const size = Math.max(0, ...drawn.map((format) => format.bytes)) + maps.reduce((sum, format) => sum + format.bytes, 0);
+  const fewest = Math.min(...formats.map((format) => format.moments));
+  const thinned = fewest < offer.moments ? `, ${fewest} of them in the animation` : "";
+  return `${offer.moments} moments from ${fixed(offer.from_s, 1)} to ${fixed(offer.to_s, 1)} s, ${fixed(offer.interval_s, 1)} s apart${thinned}; about ${bytes(size)}.`;
+}
+
+/** How far it is; empty: nothing to say. */
+export function flowProgress(job: FlowExport): string {
+  switch (job.state) {
+    case "running": return `Writing the flow of scenario ${job.scenario}: ${percent(job.share, 0)}`;
+    case "cancelling": return "Cancelling";
+    case "done": return `Written: ${job.files.map((file) => `${file.name}, ${bytes(file.bytes)}`).join("; ")}`;
+    case "cancelled": return "Cancelled; nothing was kept";
+    case "failed": return `Not written: ${job.message}`;
+    case "idle": return "";
+  }
+}

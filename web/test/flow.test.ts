@@ -1,0 +1,26 @@
+import { describe, expect, it } from "vitest";
+import type { FlowExport, FlowOffer } from "../src/protocol/messages";
+import { flowProgress, flowSummary } from "../src/state/flow";
+
+const offer: FlowOffer = { scenario: "A", from_s: 0, to_s: 212.4, moments: 213, interval_s: 1, shortest_interval_s: 0.1, formats: [
+  { name: "gltf", what: "", files: ["run.glb"], moments: 100, bytes: 12e6, refused: null },
+  { name: "3dtiles", what: "", files: ["tileset.json", "run.glb"], moments: 100, bytes: 12e6, refused: null },
+  { name: "geotiff", what: "", files: ["depth.tif", "speed.tif", "pressure.tif"], moments: 213, bytes: 3e6, refused: null },
+  { name: "netcdf", what: "", files: ["maps.nc"], moments: 213, bytes: 3e6, refused: null },
+] };
+const job = (now: Partial<FlowExport>): FlowExport => ({ state: "idle", scenario: "A", share: null, message: "", files: [], ...now });
+
+describe("the moving flow", () => {
+  it("says how many moments there will be and about how large, counting the shared file once", () => {
+    expect(flowSummary(offer, ["geotiff", "netcdf"])).toBe("213 moments from 0.0 to 212.4 s, 1.0 s apart; about 6.00\u202fMB.");
+    expect(flowSummary(offer, ["gltf", "3dtiles"])).toBe("213 moments from 0.0 to 212.4 s, 1.0 s apart, 100 of them in the animation; about 12.0\u202fMB.");
+    expect(flowSummary(offer, ["3dtiles", "netcdf"])).toContain("about 15.0\u202fMB");
+    expect(flowSummary(offer, [])).toBe("Choose at least one format.");
+  });
+  it("says how far the writing is, and why it failed", () => {
+    expect(flowProgress(job({ state: "running", share: 0.404 }))).toBe("Writing the flow of scenario A: 40 %");
+    expect(flowProgress(job({ state: "done", files: [{ name: "run.glb", bytes: 1.2e6 }] }))).toBe("Written: run.glb, 1.20\u202fMB");
+    expect(flowProgress(job({ state: "failed", message: "No space left on device" }))).toBe("Not written: No space left on device");
+    expect(flowProgress(job({}))).toBe("");
+  });
+});
