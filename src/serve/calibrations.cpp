@@ -15,8 +15,11 @@
 #include "core/try.hpp"
 #include "ensemble/ensemble_folder.hpp"
 #include "params/fields.hpp"
+#include "params/scene_text.hpp"
+#include "products/text_file.hpp"
 #include "twin/json_keys.hpp"
 #include "twin/setup.hpp"
+#include "twin/table_entry.hpp"
 
 namespace talus::serve {
 namespace {
@@ -112,24 +115,25 @@ json observations_json(const std::vector<ensemble::ObservedValue>& observed) {
     return list;
 }
 
+/// Null: there can be one.
+json why_none(const std::vector<ensemble::ObservedValue>& observed, const run::SceneSource& source) {
+    if (source.file.empty()) return "This program serves the scene without calibrations.";
+    if (!observed.empty()) return nullptr;
+    return "Scenario A has no field observations to calibrate against. Add them on the tab Points, or in the scene "
+           "file.";
+}
+
 }  // namespace
 
 Calibrations::Calibrations(std::shared_ptr<const scene::Scene> scene, CalibrationSettings settings,
                            std::function<void(json)> tell)
-    : scene_(std::move(scene)),
-      settings_(std::move(settings)),
+    : settings_(std::move(settings)),
+      opened_(std::move(scene)),
+      scene_(opened_),
       observed_(ensemble::observed_values(*scene_)),
       tell_(std::move(tell)) {
-    json why_not;
-    if (observed_.empty()) {
-        why_not =
-            "This scene has no field observations to calibrate against. Add [[observation]], [[run_up]], "
-            "[[deposit_depth]] or another of the sections in docs/ensembles.md to its file and open it again.";
-    } else if (settings_.source.file.empty()) {
-        why_not = "This program serves the scene without calibrations.";
-    }
     status_ = {{"state", "idle"},
-               {"why_not", why_not},
+               {"why_not", why_none(observed_, settings_.source)},
                {"by", nullptr},
                {"message", ""},
                {"observations", observations_json(observed_)},
@@ -169,6 +173,41 @@ void Calibrations::tell_now() {
     if (!closed_) tell_(status_);
 }
 
+void Calibrations::follow(const json& observations) {
+    const std::lock_guard lock(mutex_);
+    followed_ = observations;
+    if (!busy_ && !closed_) take_observations();
+}
+
+void Calibrations::take_observations() {
+    if (followed_ == taken_ || followed_.is_null()) return;
+    taken_ = followed_;
+    std::vector<twin::TableEntry> entries;
+    for (const json& each : taken_) {
+        if (auto entry = twin::read_table_entry(each, twin::TableKind::observation))
+            entries.push_back(std::move(*entry));
+    }
+    auto scene = std::make_shared<scene::Scene>(*opened_);
+    put_entries(scene->spec, twin::TableKind::observation, entries);
+    scene_ = std::move(scene);
+    observed_ = ensemble::observed_values(*scene_);
+    status_["why_not"] = why_none(observed_, settings_.source);
+    // What a former calibration found is beside the observations that it had.
+    if (status_["state"] == "idle") status_["observations"] = observations_json(observed_);
+    tell_now();
+}
+
+Result<run::SceneSource> Calibrations::source_of_runs() const {
+    const auto now = entries_of(scene_->spec, twin::TableKind::observation),
+               then = entries_of(opened_->spec, twin::TableKind::observation);
+    if (std::equal(now.begin(), now.end(), then.begin(), then.end(), twin::same_values)) return settings_.source;
+    TALUS_ASSIGN(params::SceneSpec spec, scene::parse_scene(settings_.source.file, settings_.source.overrides));
+    put_entries(spec, twin::TableKind::observation, now);
+    const fs::path file = settings_.folder / "scene_observed.toml";
+    TALUS_TRY(products::write_text_file(file, params::write_short_scene(spec)));
+    return run::SceneSource{file, {}};
+}
+
 void Calibrations::start(const json& wanted, const std::string& by, const Respond& respond) {
     auto plan = read_plan(wanted);
     if (!plan) {
@@ -185,6 +224,7 @@ void Calibrations::start(const json& wanted, const std::string& by, const Respon
         return;
     }
     if (thread_.joinable()) thread_.join();  // it has ended
+    take_observations();
     busy_ = true;
     stop_ = false;
     thread_ = std::thread([this, plan = std::move(*plan), by, respond] { work(plan, by, respond); });
@@ -223,10 +263,13 @@ void Calibrations::work(calibrate::CalibrationPlan plan, const std::string& by, 
             }
             respond(error_response(400, why));
         };
-        const Result<ensemble::PlannedRuns> runs = plan_calibration(plan, settings_.source, *scene_);
+        auto source = source_of_runs();
+        if (!source) return refuse(source.error().message);
+        source_ = std::move(*source);
+        const Result<ensemble::PlannedRuns> runs = plan_calibration(plan, source_, *scene_);
         if (!runs) return refuse(runs.error().message);
         if (plan.search.fast_runs > 0) {
-            auto fast = plan_fast_model(plan, settings_.source, *scene_);
+            auto fast = plan_fast_model(plan, source_, *scene_);
             if (!fast) return refuse(fast.error().message);
             plan.fast.emplace(*std::move(fast));
         }
@@ -250,22 +293,21 @@ void Calibrations::work(calibrate::CalibrationPlan plan, const std::string& by, 
 Calibrations::Ending Calibrations::calibrate_in(const fs::path& path, const calibrate::CalibrationPlan& plan,
                                                 const ensemble::PlannedRuns& runs) {
     const auto folder = ensemble::EnsembleFolder::open(
-        path,
-        calibration_definition("calibration", plan, runs, settings_.source, *scene_, observed_, settings_.scene_name));
+        path, calibration_definition("calibration", plan, runs, source_, *scene_, observed_, settings_.scene_name));
     if (!folder) return {"failed", folder.error().message};
     calibrate::CalibrationOptions options;
     options.stop_requested = &stop_;
     options.on_progress = [this](const calibrate::CalibrationProgress& now) { take_progress(now); };
     options.on_run = [this](const calibrate::CalibrationRun& run) { take_run(run); };
     options.on_fit = [this](const calibrate::Calibration& now) { take_fit(now); };
-    const auto made = calibrate::calibrate(plan, runs, settings_.source, *scene_, observed_, *folder, options);
+    const auto made = calibrate::calibrate(plan, runs, source_, *scene_, observed_, *folder, options);
     if (!made) return {"failed", made.error().message};
     if (!made->fault.empty()) return {"failed", made->fault};
     if (made->result.interrupted || stop_) return {"cancelled", ""};
     take_fit(*made);
     take_result(*made);
     if (!settings_.keep) return {"done", ""};
-    const Status written = write_calibration(*made, settings_.source, settings_.own_files, path);
+    const Status written = write_calibration(*made, source_, settings_.own_files, path);
     return {"done", written ? "" : written.error().message};
 }
 
