@@ -8,6 +8,7 @@
 #include "core/hash.hpp"
 #include "core/try.hpp"
 #include "core/visible_text.hpp"
+#include "twin/table_entry.hpp"
 
 namespace talus::serve {
 namespace {
@@ -32,6 +33,9 @@ json alarm_json(const twin::RaisedAlarm& alarm) {
 
 Alerts::Alerts(Session& session, std::shared_ptr<const scene::Scene> scene, AlertSettings settings)
     : session_(session), scene_(std::move(scene)), settings_(std::move(settings)) {
+    for (const twin::TableEntry& entry : entries_of(scene_->spec, twin::TableKind::trigger)) {
+        triggers_.push_back({{"name", entry.name()}, {"values", table_values_json(entry)}});
+    }
     // A broker is for scenes whose file has something for it: nobody in the page makes the server connect to it.
     if (scene_->spec.triggers.empty() && scene_->spec.alarms.empty()) settings_.mqtt.reset();
 }
@@ -57,15 +61,20 @@ Status Alerts::open() {
     }
     sender_ = std::make_unique<AlarmSender>(settings_.sender, link_.get());
     behind_.assign(sender_->receivers().size(), false);
+    reserve();
     return {};
+}
+
+/// Once: a place for runs of triggers is kept from then on.
+void Alerts::reserve() {
+    if (!listens() || std::exchange(reserved_, true)) return;
+    session_.loop().post([](Scenarios& all) { all.reserve_for_triggers(); });
 }
 
 void Alerts::follow_triggers(const json& triggers) {
     if (triggers == triggers_) return;
     triggers_ = triggers;
-    if (listens() && !std::exchange(reserved_, true)) {
-        session_.loop().post([](Scenarios& all) { all.reserve_for_triggers(); });
-    }
+    reserve();
     tell();
 }
 

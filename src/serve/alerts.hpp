@@ -80,6 +80,7 @@ class Alerts {
     static void start(Scenarios& all, Run& run, const Job& job, const Answered& answered);
     static void feed(Scenarios& all, int index, const Run& run, const Job& job, const Answered& answered);
     [[nodiscard]] bool listens() const { return !triggers_.empty() && (settings_.http || settings_.mqtt); }
+    void reserve();
     [[nodiscard]] bool too_many();
     void refuse(int status, const std::string& sentence, const std::string& source, const Respond& respond);
     void note(const std::string& sentence);

@@ -115,6 +115,10 @@ json observations_json(const std::vector<ensemble::ObservedValue>& observed) {
     return list;
 }
 
+bool same_entries(const std::vector<twin::TableEntry>& a, const std::vector<twin::TableEntry>& b) {
+    return std::equal(a.begin(), a.end(), b.begin(), b.end(), twin::same_values);
+}
+
 /// Null: there can be one.
 json why_none(const std::vector<ensemble::ObservedValue>& observed, const run::SceneSource& source) {
     if (source.file.empty()) return "This program serves the scene without calibrations.";
@@ -187,9 +191,12 @@ void Calibrations::take_observations() {
         if (auto entry = twin::read_table_entry(each, twin::TableKind::observation))
             entries.push_back(std::move(*entry));
     }
-    auto scene = std::make_shared<scene::Scene>(*opened_);
-    put_entries(scene->spec, twin::TableKind::observation, entries);
-    scene_ = std::move(scene);
+    scene_ = opened_;
+    if (!same_entries(entries, entries_of(opened_->spec, twin::TableKind::observation))) {
+        auto scene = std::make_shared<scene::Scene>(*opened_);
+        put_entries(scene->spec, twin::TableKind::observation, entries);
+        scene_ = std::move(scene);
+    }
     observed_ = ensemble::observed_values(*scene_);
     status_["why_not"] = why_none(observed_, settings_.source);
     // What a former calibration found is beside the observations that it had.
@@ -198,9 +205,8 @@ void Calibrations::take_observations() {
 }
 
 Result<run::SceneSource> Calibrations::source_of_runs() const {
-    const auto now = entries_of(scene_->spec, twin::TableKind::observation),
-               then = entries_of(opened_->spec, twin::TableKind::observation);
-    if (std::equal(now.begin(), now.end(), then.begin(), then.end(), twin::same_values)) return settings_.source;
+    if (scene_ == opened_) return settings_.source;
+    const auto now = entries_of(scene_->spec, twin::TableKind::observation);
     TALUS_ASSIGN(params::SceneSpec spec, scene::parse_scene(settings_.source.file, settings_.source.overrides));
     put_entries(spec, twin::TableKind::observation, now);
     const fs::path file = settings_.folder / "scene_observed.toml";
