@@ -131,7 +131,7 @@ json observed_json(const scene::Scene& scene, const run::RunResult& result, cons
     return {{"time_s", result.simulated_time}, {"rows", std::move(rows)}};
 }
 
-void observed(Session& session, const Request& request, const Respond& respond) {
+void observed_table(Session& session, const Request& request, const Respond& respond) {
     take(session, request, respond, [](Scenarios& all, int index) -> Result<Work> {
         const twin::Scenario& scenario = all.at(index);
         return Work([outcome = scenario.outcome(), entries = scenario.setup_json()["observations"]] {
@@ -214,7 +214,7 @@ void add_scenario_routes(Router& router, Session& session, Exports& exports) {
                 {"time_s"}});
     router.add({"GET", "/api/scenarios/{s}/probe", Role::viewer, with_session(probe), {"x_m", "y_m"}});
     router.add({"GET", "/api/scenarios/{s}/figures", Role::viewer, with_session(figures)});
-    router.add({"GET", "/api/scenarios/{s}/observed", Role::viewer, with_session(observed)});
+    router.add({"GET", "/api/scenarios/{s}/observed", Role::viewer, with_session(observed_table)});
     router.add({"GET", "/api/scenarios/{s}/layers/{name}", Role::viewer, with_session(layer), {"time_s"}});
     router.add({"POST", "/api/scenarios/{s}/actions", Role::controller, with_session(action)});
     router.add(

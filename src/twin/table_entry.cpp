@@ -18,7 +18,7 @@ namespace {
 
 using nlohmann::json;
 
-constexpr std::size_t longest_text = 200;  // bytes
+constexpr std::size_t longest_entry_text = 200;  // bytes
 
 const char* kind_name(TableKind kind) {
     switch (kind) {
@@ -60,7 +60,7 @@ void append_entry(params::SceneSpec& spec, const TableEntry& entry) {
     for (const auto& [key, value] : entry.values) section.find(key)->set(spec, index, value);
 }
 
-json value_json(const params::ParameterValue& value) {
+json entry_value_json(const params::ParameterValue& value) {
     if (const double* number = std::get_if<double>(&value)) return *number;
     if (const std::string* text = std::get_if<std::string>(&value)) return *text;
     if (const bool* yes = std::get_if<bool>(&value)) return *yes;
@@ -68,7 +68,7 @@ json value_json(const params::ParameterValue& value) {
 }
 
 /// monostate where it is null.
-Result<params::ParameterValue> read_value(const json& values, const params::Parameter& parameter) {
+Result<params::ParameterValue> read_entry_value(const json& values, const params::Parameter& parameter) {
     const json& value = values[parameter.key];
     if (value.is_null()) return params::ParameterValue();
     switch (parameter.kind) {
@@ -82,7 +82,7 @@ Result<params::ParameterValue> read_value(const json& values, const params::Para
             return params::ParameterValue(*number);
         }
         default: {
-            TALUS_ASSIGN(auto text, read_text(values, parameter.key, longest_text));
+            TALUS_ASSIGN(auto text, read_text(values, parameter.key, longest_entry_text));
             return params::ParameterValue(std::move(*text));
         }
     }
@@ -158,7 +158,7 @@ json table_values_json(const TableEntry& entry) {
     json values = json::object();
     for (const params::Parameter& parameter : params::find_section(entry.section)->parameters) {
         const auto found = entry.values.find(parameter.key);
-        values[parameter.key] = found == entry.values.end() ? json() : value_json(found->second);
+        values[parameter.key] = found == entry.values.end() ? json() : entry_value_json(found->second);
     }
     return values;
 }
@@ -171,7 +171,7 @@ Status read_table_values(const json& values, TableEntry& entry) {
     TALUS_TRY(check_keys(values, keys, {}));
     for (const params::Parameter& parameter : section.parameters) {
         if (!values.contains(parameter.key)) continue;
-        TALUS_ASSIGN(params::ParameterValue value, read_value(values, parameter));
+        TALUS_ASSIGN(params::ParameterValue value, read_entry_value(values, parameter));
         if (std::holds_alternative<std::monostate>(value)) {
             entry.values.erase(parameter.key);
         } else {
@@ -226,7 +226,7 @@ json table_sections_json() {
                                        : text ? "text"
                                               : "boolean"},
                                 {"required", parameter.required},
-                                {"default", value_json(default_value(section, parameter))},
+                                {"default", entry_value_json(default_value(section, parameter))},
                                 {"absent", parameter.absent},
                                 {"allowed", number ? parameter.range.text() : ""},
                                 {"help", parameter.help}});

@@ -12,11 +12,11 @@ namespace {
 
 using testing::HasSubstr;
 
-json observed(const char* section, const json& values) {
+json put_observed(const char* section, const json& values) {
     return {{"action", "put_observation"}, {"section", section}, {"values", values}};
 }
 
-json put(const char* what, const json& values) {
+json put_entry(const char* what, const json& values) {
     return {{"action", std::string("put_") + what}, {"values", values}};
 }
 
@@ -26,20 +26,21 @@ scene::Scene with_house() {
     return scene;
 }
 
-const json& first(const json& setup, const char* list) {
+const json& first_of(const json& setup, const char* list) {
     return setup[list][0];
 }
 
 TEST(Observations, of_every_kind_without_a_file_are_added_changed_removed_and_undone) {
     const auto scenario = open(with_house());
-    act(*scenario, observed("observation", {{"name", "Bend"}, {"chainage_m", 40}, {"debris_speed_mps", 6}}));
-    act(*scenario, observed("superelevation",
-                            {{"chainage_m", 30}, {"bend_radius_m", 40}, {"width_m", 8}, {"level_difference_m", 1}}));
-    act(*scenario, observed("arrival", {{"chainage_m", 50}, {"time_s", 8}}));
-    act(*scenario, observed("run_up", {{"x_m", west + 55}, {"y_m", south + 30}, {"height_m", 1.5}}));
-    act(*scenario, observed("deposit_depth", {{"x_m", west + 70}, {"y_m", south + 30}, {"depth_m", 0.5}}));
-    act(*scenario, observed("damage", {{"building", "House 38"}}));
-    act(*scenario, observed("observed_run_out", {{"chainage_m", 80}}));
+    act(*scenario, put_observed("observation", {{"name", "Bend"}, {"chainage_m", 40}, {"debris_speed_mps", 6}}));
+    act(*scenario,
+        put_observed("superelevation",
+                     {{"chainage_m", 30}, {"bend_radius_m", 40}, {"width_m", 8}, {"level_difference_m", 1}}));
+    act(*scenario, put_observed("arrival", {{"chainage_m", 50}, {"time_s", 8}}));
+    act(*scenario, put_observed("run_up", {{"x_m", west + 55}, {"y_m", south + 30}, {"height_m", 1.5}}));
+    act(*scenario, put_observed("deposit_depth", {{"x_m", west + 70}, {"y_m", south + 30}, {"depth_m", 0.5}}));
+    act(*scenario, put_observed("damage", {{"building", "House 38"}}));
+    act(*scenario, put_observed("observed_run_out", {{"chainage_m", 80}}));
     json setup = scenario->setup_json();
     ASSERT_EQ(setup["observations"].size(), 7U);
     EXPECT_EQ(setup["observations"][1]["name"], "observation 2") << "a name of its own";
@@ -51,10 +52,10 @@ TEST(Observations, of_every_kind_without_a_file_are_added_changed_removed_and_un
                     {"id", "observation-1"},
                     {"values", {{"name", "Upper bend"}, {"debris_speed_mps", nullptr}, {"front_velocity_mps", 5}}}});
     setup = scenario->setup_json();
-    EXPECT_EQ(first(setup, "observations")["name"], "Upper bend");
-    EXPECT_EQ(first(setup, "observations")["values"]["front_velocity_mps"], 5);
-    EXPECT_TRUE(first(setup, "observations")["values"]["debris_speed_mps"].is_null());
-    EXPECT_EQ(first(setup, "observations")["values"]["chainage_m"], 40) << "what is not given stays";
+    EXPECT_EQ(first_of(setup, "observations")["name"], "Upper bend");
+    EXPECT_EQ(first_of(setup, "observations")["values"]["front_velocity_mps"], 5);
+    EXPECT_TRUE(first_of(setup, "observations")["values"]["debris_speed_mps"].is_null());
+    EXPECT_EQ(first_of(setup, "observations")["values"]["chainage_m"], 40) << "what is not given stays";
     act(*scenario, {{"action", "remove_observation"}, {"id", "observation-1"}});
     EXPECT_EQ(scenario->setup_json()["observations"].size(), 6U);
     act(*scenario, {{"action", "undo"}});
@@ -63,10 +64,10 @@ TEST(Observations, of_every_kind_without_a_file_are_added_changed_removed_and_un
 
 TEST(Observations, change_nothing_of_the_run_and_are_what_reports_and_fits_read) {
     const auto plain = open(channel_scene()), marked = open(channel_scene());
-    act(*marked, observed("observation", {{"name", "Bend"}, {"chainage_m", 40}, {"debris_speed_mps", 6}}));
+    act(*marked, put_observed("observation", {{"name", "Bend"}, {"chainage_m", 40}, {"debris_speed_mps", 6}}));
     run_until(*plain, 1.5);
     run_until(*marked, 1);
-    act(*marked, observed("run_up", {{"x_m", west + 55}, {"y_m", south + 30}, {"height_m", 1.5}}));
+    act(*marked, put_observed("run_up", {{"x_m", west + 55}, {"y_m", south + 30}, {"height_m", 1.5}}));
     run_until(*marked, 1.5);
     EXPECT_EQ(marked->hash(), plain->hash());
     EXPECT_EQ(marked->setup_json()["changes"], json::array());
@@ -84,12 +85,12 @@ TEST(Observations, are_in_the_journal_and_a_replay_has_the_same_hash_and_the_sam
     scene::Scene scene = channel_scene();
     scene.spec.observations = {{"surveyed", 30, 5, {}, "report"}};
     const auto scenario = open(scene);
-    EXPECT_EQ(first(scenario->setup_json(), "observations")["from_scene"], true);
-    act(*scenario, observed("arrival", {{"chainage_m", 50}, {"time_s", 8}}));
+    EXPECT_EQ(first_of(scenario->setup_json(), "observations")["from_scene"], true);
+    act(*scenario, put_observed("arrival", {{"chainage_m", 50}, {"time_s", 8}}));
     run_until(*scenario, 1);
     act(*scenario, {{"action", "remove_observation"}, {"id", "observation-1"}});
     act(*scenario, {{"action", "undo"}});
-    act(*scenario, put("alarm", {{"name", "on its way"}, {"chainage_m", 60}, {"distance_m", 40}}));
+    act(*scenario, put_entry("alarm", {{"name", "on its way"}, {"chainage_m", 60}, {"distance_m", 40}}));
     run_until(*scenario, 2);
     const auto journal = read_journal(scenario->journal_json().dump());
     ASSERT_TRUE(journal) << journal.error().message;
@@ -109,14 +110,14 @@ TEST(Observations, are_in_the_journal_and_a_replay_has_the_same_hash_and_the_sam
     const auto opened = Scenario::open_at(*read, std::make_shared<const scene::Scene>(scene), {});
     ASSERT_TRUE(opened) << opened.error().message;
     EXPECT_EQ((*opened)->setup_json()["observations"].size(), 1U);
-    act(**opened, observed("arrival", {{"chainage_m", 50}, {"time_s", 8}}));
+    act(**opened, put_observed("arrival", {{"chainage_m", 50}, {"time_s", 8}}));
     EXPECT_EQ((*opened)->setup_json()["observations"][1]["id"], "observation-2");
 }
 
 TEST(Observations, are_refused_as_the_reader_of_a_scene_file_refuses_them) {
     const auto scenario = open(with_house());
     const auto why = [&](const char* section, const json& values) {
-        return refusal(*scenario, observed(section, values));
+        return refusal(*scenario, put_observed(section, values));
     };
     EXPECT_THAT(why("arrival", {{"chainage_m", 50}}), HasSubstr("time_s: missing"));
     EXPECT_THAT(why("arrival", {{"chainage_m", 50}, {"time_s", -1}}), HasSubstr("time_s = -1: must be a number 0.001"));
@@ -138,12 +139,12 @@ TEST(Observations, are_refused_as_the_reader_of_a_scene_file_refuses_them) {
 
 TEST(PlacedAlarms, are_raised_from_when_they_are_added_once_and_again_after_a_change) {
     const auto scenario = open(with_house());
-    act(*scenario, put("alarm", {{"name", "wet"}, {"x_m", west + 20}, {"y_m", south + 30}, {"depth_m", 0.1}}));
+    act(*scenario, put_entry("alarm", {{"name", "wet"}, {"x_m", west + 20}, {"y_m", south + 30}, {"depth_m", 0.1}}));
     run_until(*scenario, 2.5);
     ASSERT_EQ(scenario->alarms().size(), 1U);
     EXPECT_EQ(scenario->alarms()[0].name, "wet");
     act(*scenario,
-        put("alarm", {{"name", "near"}, {"structure", "House 38"}, {"distance_m", 1000}, {"message", "Go."}}));
+        put_entry("alarm", {{"name", "near"}, {"structure", "House 38"}, {"distance_m", 1000}, {"message", "Go."}}));
     act(*scenario,
         {{"action", "put_observation"}, {"section", "arrival"}, {"values", {{"chainage_m", 50}, {"time_s", 8}}}});
     run_until(*scenario, 3);
@@ -163,27 +164,28 @@ TEST(PlacedAlarms, know_what_was_drawn_in_the_page_and_are_refused_without_a_pla
                     {"name", "Shelter"},
                     {"height_m", 5},
                     {"footprint", ring(west + 60, south + 27, west + 66, south + 33)}});
-    act(*scenario, put("alarm", {{"name", "load"}, {"structure", "Shelter"}, {"impact_pressure_Pa", 1000}}));
+    act(*scenario, put_entry("alarm", {{"name", "load"}, {"structure", "Shelter"}, {"impact_pressure_Pa", 1000}}));
     run_until(*scenario, 12);
     ASSERT_EQ(scenario->alarms().size(), 1U);
     EXPECT_THAT(scenario->alarms()[0].sentence, HasSubstr("Shelter"));
-    EXPECT_THAT(refusal(*scenario, put("alarm", {{"structure", "Shed"}, {"depth_m", 1}})),
+    EXPECT_THAT(refusal(*scenario, put_entry("alarm", {{"structure", "Shed"}, {"depth_m", 1}})),
                 HasSubstr("structure = \"Shed\""));
-    EXPECT_THAT(refusal(*scenario, put("alarm", {{"chainage_m", 5}})), HasSubstr("exactly one of distance_m"));
-    EXPECT_THAT(refusal(*scenario, put("alarm", {{"chainage_m", 5}, {"depth_m", 1}})),
+    EXPECT_THAT(refusal(*scenario, put_entry("alarm", {{"chainage_m", 5}})), HasSubstr("exactly one of distance_m"));
+    EXPECT_THAT(refusal(*scenario, put_entry("alarm", {{"chainage_m", 5}, {"depth_m", 1}})),
                 HasSubstr("depth_m: needs structure"));
-    EXPECT_THAT(refusal(*scenario, put("alarm", {{"name", "load"}, {"chainage_m", 5}, {"distance_m", 1}})),
+    EXPECT_THAT(refusal(*scenario, put_entry("alarm", {{"name", "load"}, {"chainage_m", 5}, {"distance_m", 1}})),
                 HasSubstr("name = \"load\" is refused"));
-    EXPECT_THAT(refusal(*scenario, put("alarm", {{"webhook", "https://example.org"}})), HasSubstr("no such key here"));
+    EXPECT_THAT(refusal(*scenario, put_entry("alarm", {{"webhook", "https://example.org"}})),
+                HasSubstr("no such key here"));
 }
 
 TEST(PlacedTriggers, start_a_run_of_the_scene_with_their_limits) {
     const auto scenario = open(channel_scene());
-    EXPECT_THAT(refusal(*scenario, put("trigger", {{"name", "slope"}, {"release", "scarp"}})),
+    EXPECT_THAT(refusal(*scenario, put_entry("trigger", {{"name", "slope"}, {"release", "scarp"}})),
                 HasSubstr("nearest name: scar"));
-    EXPECT_THAT(refusal(*scenario, put("trigger", {{"name", "slope"}, {"volume_limit_m3", 50}})),
+    EXPECT_THAT(refusal(*scenario, put_entry("trigger", {{"name", "slope"}, {"volume_limit_m3", 50}})),
                 HasSubstr("volume_limit_m3: needs release"));
-    act(*scenario, put("trigger", {{"name", "slope"}, {"release", "scar"}, {"volume_limit_m3", 50}}));
+    act(*scenario, put_entry("trigger", {{"name", "slope"}, {"release", "scar"}, {"volume_limit_m3", 50}}));
     ASSERT_EQ(scenario->triggers().size(), 1U);
     const auto started = scenario->opening()({});
     ASSERT_TRUE(started) << started.error().message;
