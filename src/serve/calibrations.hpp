@@ -72,6 +72,10 @@ class Calibrations {
     void tell_now();
     [[nodiscard]] std::filesystem::path new_folder() const;
 
+    [[nodiscard]] static nlohmann::json observations_json(const std::vector<ensemble::ObservedValue>& observed);
+    /// A sentence; null: there can be one.
+    [[nodiscard]] static nlohmann::json why_none(const std::vector<ensemble::ObservedValue>& observed,
+                                                 const run::SceneSource& source);
     /// Under the lock, while none runs: takes the observations that are followed.
     void take_observations();
     /// Loads the scene with these observations. Errors: it cannot be read or written.
