@@ -155,10 +155,11 @@ bool same_values(const TableEntry& a, const TableEntry& b) {
 }
 
 json table_values_json(const TableEntry& entry) {
+    params::SceneSpec spec;  // with the default of what is not given
+    append_entry(spec, entry);
     json values = json::object();
     for (const params::Parameter& parameter : params::find_section(entry.section)->parameters) {
-        const auto found = entry.values.find(parameter.key);
-        values[parameter.key] = found == entry.values.end() ? json() : entry_value_json(found->second);
+        values[parameter.key] = entry_value_json(parameter.get(spec, 0));
     }
     return values;
 }

@@ -207,7 +207,7 @@ TEST(TableSections, say_what_a_form_needs_and_name_no_file_and_no_address) {
             EXPECT_NE(key["key"], "file");
         }
     }
-    EXPECT_EQ(sections[0]["one_of"], json({{"front_velocity_mps", "debris_speed_mps"}}));
+    EXPECT_EQ(sections[0]["one_of"], json::array({json::array({"front_velocity_mps", "debris_speed_mps"})}));
 }
 
 }  // namespace
