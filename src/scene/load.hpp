@@ -46,6 +46,9 @@ namespace talus::scene {
 /// note: it is only drawn.
 [[nodiscard]] Status load_observations(const ParsedScene& parsed, Scene& scene);
 
+/// What that checks of observations without a file: chainages, also of an [[observation]], places, names of buildings.
+[[nodiscard]] Status check_observed_places(const ParsedScene& parsed, const Scene& scene);
+
 /// Fills scene.gauges. Terrain and flow path must be loaded.
 [[nodiscard]] Status load_gauges(const ParsedScene& parsed, Scene& scene);
 

@@ -61,6 +61,16 @@ Status check_damages(const ParsedScene& parsed, const Scene& scene) {
     return {};
 }
 
+Status check_observed(const ParsedScene& parsed, const Scene& scene) {
+    const params::SceneSpec& spec = scene.spec;
+    TALUS_TRY(check_chainages(parsed, scene, spec.superelevations, "superelevation"));
+    TALUS_TRY(check_chainages(parsed, scene, spec.arrivals, "arrival"));
+    TALUS_TRY(check_chainages(parsed, scene, spec.observed_run_outs, "observed_run_out"));
+    TALUS_TRY(check_places(parsed, scene, spec.run_ups, "run_up"));
+    TALUS_TRY(check_places(parsed, scene, spec.deposit_depths, "deposit_depth"));
+    return check_damages(parsed, scene);
+}
+
 /// `what` in words: "deposit outline"; `section` as in the scene file.
 Status load_outlines(const ParsedScene& parsed, const std::vector<params::OutlineSpec>& specs, const char* section,
                      const char* what, std::vector<std::vector<Polygon>>& outlines, Scene& scene) {
@@ -102,15 +112,15 @@ Status load_elevation_changes(const ParsedScene& parsed, Scene& scene) {
 
 }  // namespace
 
+Status check_observed_places(const ParsedScene& parsed, const Scene& scene) {
+    TALUS_TRY(check_chainages(parsed, scene, scene.spec.observations, "observation"));
+    return check_observed(parsed, scene);
+}
+
 Status load_observations(const ParsedScene& parsed, Scene& scene) {
     note_observations(scene);
     const params::SceneSpec& spec = scene.spec;
-    TALUS_TRY(check_chainages(parsed, scene, spec.superelevations, "superelevation"));
-    TALUS_TRY(check_chainages(parsed, scene, spec.arrivals, "arrival"));
-    TALUS_TRY(check_chainages(parsed, scene, spec.observed_run_outs, "observed_run_out"));
-    TALUS_TRY(check_places(parsed, scene, spec.run_ups, "run_up"));
-    TALUS_TRY(check_places(parsed, scene, spec.deposit_depths, "deposit_depth"));
-    TALUS_TRY(check_damages(parsed, scene));
+    TALUS_TRY(check_observed(parsed, scene));
     TALUS_TRY(load_outlines(parsed, spec.deposit_outlines, "deposit_outline", "deposit outline", scene.deposit_outlines,
                             scene));
     TALUS_TRY(

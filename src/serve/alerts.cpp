@@ -8,6 +8,7 @@
 #include "core/hash.hpp"
 #include "core/try.hpp"
 #include "core/visible_text.hpp"
+#include "twin/table_entry.hpp"
 
 namespace talus::serve {
 namespace {
@@ -32,9 +33,11 @@ json alarm_json(const twin::RaisedAlarm& alarm) {
 
 Alerts::Alerts(Session& session, std::shared_ptr<const scene::Scene> scene, AlertSettings settings)
     : session_(session), scene_(std::move(scene)), settings_(std::move(settings)) {
-    const bool triggers = !scene_->spec.triggers.empty();
-    settings_.http = settings_.http && triggers;
-    if (!triggers && scene_->spec.alarms.empty()) settings_.mqtt.reset();
+    for (const twin::TableEntry& entry : entries_of(scene_->spec, twin::TableKind::trigger)) {
+        triggers_.push_back({{"name", entry.name()}, {"values", table_values_json(entry)}});
+    }
+    // A broker is for scenes whose file has something for it: nobody in the page makes the server connect to it.
+    if (scene_->spec.triggers.empty() && scene_->spec.alarms.empty()) settings_.mqtt.reset();
 }
 
 Status Alerts::open() {
@@ -58,8 +61,21 @@ Status Alerts::open() {
     }
     sender_ = std::make_unique<AlarmSender>(settings_.sender, link_.get());
     behind_.assign(sender_->receivers().size(), false);
-    if (listens()) session_.loop().post([](Scenarios& all) { all.reserve_for_triggers(); });
+    reserve();
     return {};
+}
+
+/// Once: a place for runs of triggers is kept from then on.
+void Alerts::reserve() {
+    if (!listens() || std::exchange(reserved_, true)) return;
+    session_.loop().post([](Scenarios& all) { all.reserve_for_triggers(); });
+}
+
+void Alerts::follow_triggers(const json& triggers) {
+    if (triggers == triggers_) return;
+    triggers_ = triggers;
+    reserve();
+    tell();
 }
 
 void Alerts::close() {
@@ -95,7 +111,7 @@ void Alerts::tell() {
 }
 
 void Alerts::take(const std::string& text, const std::string& source, const Respond& respond) {
-    if (scene_->spec.triggers.empty()) return respond(error_response(409, "the scene has no [[trigger]]"));
+    if (triggers_.empty()) return respond(error_response(409, "the scene has no [[trigger]]"));
     if (!listens()) {
         return respond(error_response(409, "triggers are off; start the server with --trigger-token-file or --mqtt"));
     }
@@ -106,15 +122,7 @@ void Alerts::take(const std::string& text, const std::string& source, const Resp
     const WallTime now = std::chrono::system_clock::now();
     auto message = read_trigger_message(text, now);
     if (!message) return refuse(400, message.error().message, source, respond);
-    const std::vector<params::TriggerSpec>& triggers = scene_->spec.triggers;
-    const auto spec = std::find_if(triggers.begin(), triggers.end(), [&](const params::TriggerSpec& trigger) {
-        return trigger.name == message->trigger;
-    });
-    if (spec == triggers.end()) {
-        return refuse(400, fmt::format("trigger = \"{}\": there is no such trigger", message->trigger), source,
-                      respond);
-    }
-    Job job{std::move(*message), source, time_text(now), spec->start_discharge};
+    Job job{std::move(*message), source, time_text(now)};
     const auto answered = [this, source, respond, job](int status, const json& answer) {
         session_.post([this, source, respond, job, status, answer] {
             if (status != 200) return refuse(status, answer["error"], source, respond);
@@ -136,6 +144,16 @@ void Alerts::take(const std::string& text, const std::string& source, const Resp
 }
 
 void Alerts::decide(Scenarios& all, Runs& runs, const Job& job, const Answered& answered) {
+    const std::vector<params::TriggerSpec> triggers = all.at(0).triggers();
+    const auto found = std::find_if(triggers.begin(), triggers.end(), [&](const params::TriggerSpec& trigger) {
+        return trigger.name == job.message.trigger;
+    });
+    if (found != triggers.end()) return decide(all, runs, job, *found, answered);
+    answered(400, {{"error", fmt::format("trigger = \"{}\": there is no such trigger", job.message.trigger)}});
+}
+
+void Alerts::decide(Scenarios& all, Runs& runs, const Job& job, const params::TriggerSpec& trigger,
+                    const Answered& answered) {
     Run& run = runs[job.message.trigger];
     const auto index = all.run_of(job.message.trigger);
     const auto refused = [&](const std::string& sentence) { answered(409, {{"error", sentence}}); };
@@ -152,14 +170,14 @@ void Alerts::decide(Scenarios& all, Runs& runs, const Job& job, const Answered& 
         return feed(all, *index, run, job, answered);
     }
     if (const auto discharge = job.message.discharge(); discharge && *discharge >= 0) {
-        if (*discharge <= job.start_discharge) {
+        if (*discharge <= trigger.start_discharge) {
             run.armed = true;
-            return idle(
-                fmt::format("{:.6g} m3/s does not start it; above {:.6g} m3/s does", *discharge, job.start_discharge));
+            return idle(fmt::format("{:.6g} m3/s does not start it; above {:.6g} m3/s does", *discharge,
+                                    trigger.start_discharge));
         }
         if (!run.armed) {
             return idle(fmt::format("its last run is over; it starts again after a value of {:.6g} m3/s or less",
-                                    job.start_discharge));
+                                    trigger.start_discharge));
         }
     }
     start(all, run, job, answered);
@@ -274,16 +292,15 @@ std::string Alerts::delivery_of(const Told& told, std::size_t alarm) const {
 
 json Alerts::describe() const {
     json triggers = json::array(), runs = json::array(), alarms = json::array(), notes = json::array();
-    for (const params::TriggerSpec& trigger : scene_->spec.triggers) {
+    for (const json& trigger : triggers_) {
         json takes = json::object();
-        const std::pair<const char*, std::optional<double>> limits[] = {
-            {"volume_m3", trigger.volume_limit},
-            {"pore_pressure_ratio", trigger.pore_pressure_ratio_limit},
-            {"discharge_m3ps", trigger.discharge_limit}};
+        const std::pair<const char*, const char*> limits[] = {{"volume_m3", "volume_limit_m3"},
+                                                              {"pore_pressure_ratio", "pore_pressure_ratio_limit"},
+                                                              {"discharge_m3ps", "discharge_limit_m3ps"}};
         for (const auto& [key, limit] : limits) {
-            if (limit) takes[key] = *limit;
+            if (const json& most = trigger["values"][limit]; !most.is_null()) takes[key] = most;
         }
-        triggers.push_back({{"name", trigger.name}, {"limits", takes}});
+        triggers.push_back({{"name", trigger["name"]}, {"limits", takes}});
     }
     for (const auto& [scenario, told] : told_) {
         const char* name = Scenarios::name_of(scenario);
@@ -306,7 +323,8 @@ json Alerts::describe() const {
         }
     }
     for (const auto& [time, sentence] : notes_) notes.push_back({{"at", time}, {"sentence", sentence}});
-    return {{"listening", {{"http", settings_.http}, {"mqtt", settings_.mqtt ? json(mqtt_state_) : json()}}},
+    return {{"listening",
+             {{"http", settings_.http && !triggers_.empty()}, {"mqtt", settings_.mqtt ? json(mqtt_state_) : json()}}},
             {"triggers", triggers},
             {"runs", runs},
             {"alarms", alarms},

@@ -48,6 +48,8 @@ class Alerts {
     /// A message that came over `source`, "HTTP" or "MQTT". The answer is `{"done", "scenario", "started"}`; errors:
     /// 400 for the message, 409 for what is not possible now, 429 for too many.
     void take(const std::string& text, const std::string& source, const Respond& respond);
+    /// The triggers of the first scenario, as its setup has them.
+    void follow_triggers(const nlohmann::json& triggers);
     /// As `GET /api/alerts`.
     [[nodiscard]] nlohmann::json describe() const;
 
@@ -69,14 +71,16 @@ class Alerts {
     struct Job {
         TriggerMessage message;
         std::string source, received_at;
-        double start_discharge = 0;
     };
     using Answered = std::function<void(int status, const nlohmann::json& answer)>;
 
     static void decide(Scenarios& all, Runs& runs, const Job& job, const Answered& answered);
+    static void decide(Scenarios& all, Runs& runs, const Job& job, const params::TriggerSpec& trigger,
+                       const Answered& answered);
     static void start(Scenarios& all, Run& run, const Job& job, const Answered& answered);
     static void feed(Scenarios& all, int index, const Run& run, const Job& job, const Answered& answered);
-    [[nodiscard]] bool listens() const { return !scene_->spec.triggers.empty() && (settings_.http || settings_.mqtt); }
+    [[nodiscard]] bool listens() const { return !triggers_.empty() && (settings_.http || settings_.mqtt); }
+    void reserve();
     [[nodiscard]] bool too_many();
     void refuse(int status, const std::string& sentence, const std::string& source, const Respond& respond);
     void note(const std::string& sentence);
@@ -91,8 +95,10 @@ class Alerts {
     AlertSettings settings_;
     std::shared_ptr<Runs> runs_ = std::make_shared<Runs>();  // for the loop's thread alone
 
-    std::map<int, Told> told_;  // by scenario
-    std::vector<bool> behind_;  // receivers, which somebody has been told of
+    nlohmann::json triggers_ = nlohmann::json::array();  // of the first scenario, as its setup has them
+    bool reserved_ = false;                              // a place for their runs
+    std::map<int, Told> told_;                           // by scenario
+    std::vector<bool> behind_;                           // receivers, which somebody has been told of
     std::uint64_t generations_ = 0;
     std::deque<std::pair<std::string, std::string>> notes_;  // time and sentence, the newest last
     std::string mqtt_state_;

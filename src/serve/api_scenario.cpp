@@ -1,10 +1,14 @@
+#include <cmath>
 #include <utility>
 
 #include <fmt/format.h>
 
+#include "core/number_or_null.hpp"
 #include "core/try.hpp"
+#include "ensemble/predict.hpp"
 #include "serve/api.hpp"
 #include "serve/json_text.hpp"
+#include "twin/table_entry.hpp"
 
 namespace talus::serve {
 namespace {
@@ -97,6 +101,46 @@ void figures(Session& session, const Request& request, const Respond& respond) {
     });
 }
 
+/// Field observations beside what the run so far predicts for them; `entries`: of the setup.
+json observed_json(const scene::Scene& scene, const run::RunResult& result, const json& entries) {
+    std::vector<json> ids;
+    for (const std::string& section : twin::sections_of(twin::TableKind::observation)) {
+        for (const json& entry : entries) {
+            if (entry["section"] == section) ids.push_back(entry["id"]);
+        }
+    }
+    const std::vector<ensemble::ObservedValue> observed = ensemble::observed_values(scene);
+    const std::vector<double> predicted = ensemble::predicted_values(scene, result.observation);
+    json rows = json::array();
+    for (std::size_t k = 0; k < observed.size(); ++k) {
+        const ensemble::ObservedValue& o = observed[k];
+        const bool is = o.kind == ensemble::ObservedValue::Kind::equal;
+        const bool reached = std::isfinite(predicted[k]) && !(o.unreached < 0 && predicted[k] < 0);
+        const double deviation = deviation_of(o, reached ? predicted[k] : o.unreached);
+        rows.push_back({{"id", k < ids.size() ? ids[k] : json()},
+                        {"name", o.name},
+                        {"unit", o.unit},
+                        {"observed", o.value},
+                        {"uncertainty", o.uncertainty},
+                        {"is", is                                                  ? "equal"
+                               : o.kind == ensemble::ObservedValue::Kind::at_least ? "at_least"
+                                                                                   : "below"},
+                        {"computed", reached ? json(predicted[k]) : json()},
+                        {"deviation", number_or_null<json>(deviation)}});
+    }
+    return {{"time_s", result.simulated_time}, {"rows", std::move(rows)}};
+}
+
+void observed_table(Session& session, const Request& request, const Respond& respond) {
+    take(session, request, respond, [](Scenarios& all, int index) -> Result<Work> {
+        const twin::Scenario& scenario = all.at(index);
+        return Work([outcome = scenario.outcome(), entries = scenario.setup_json()["observations"]] {
+            const auto [scene, result] = outcome();
+            return json_response(200, observed_json(scene, result, entries));
+        });
+    });
+}
+
 void layer(Session& session, const Request& request, const Respond& respond) {
     const auto time = number_of(request, "time_s", 0, 1e9);
     if (!time) {
@@ -170,6 +214,7 @@ void add_scenario_routes(Router& router, Session& session, Exports& exports) {
                 {"time_s"}});
     router.add({"GET", "/api/scenarios/{s}/probe", Role::viewer, with_session(probe), {"x_m", "y_m"}});
     router.add({"GET", "/api/scenarios/{s}/figures", Role::viewer, with_session(figures)});
+    router.add({"GET", "/api/scenarios/{s}/observed", Role::viewer, with_session(observed_table)});
     router.add({"GET", "/api/scenarios/{s}/layers/{name}", Role::viewer, with_session(layer), {"time_s"}});
     router.add({"POST", "/api/scenarios/{s}/actions", Role::controller, with_session(action)});
     router.add(

@@ -1,6 +1,5 @@
 #include "serve/calibrations.hpp"
 
-#include <algorithm>
 #include <cmath>
 #include <exception>
 #include <pthread.h>
@@ -96,40 +95,17 @@ Result<calibrate::CalibrationPlan> read_plan(const json& wanted) {
     return plan;
 }
 
-json observations_json(const std::vector<ensemble::ObservedValue>& observed) {
-    json list = json::array();
-    for (const ensemble::ObservedValue& o : observed) {
-        list.push_back({{"name", o.name},
-                        {"unit", o.unit},
-                        {"observed", o.value},
-                        {"uncertainty", o.uncertainty},
-                        {"is", o.kind == ensemble::ObservedValue::Kind::equal      ? "equal"
-                               : o.kind == ensemble::ObservedValue::Kind::at_least ? "at_least"
-                                                                                   : "below"},
-                        {"best", nullptr},
-                        {"deviation", nullptr}});
-    }
-    return list;
-}
-
 }  // namespace
 
 Calibrations::Calibrations(std::shared_ptr<const scene::Scene> scene, CalibrationSettings settings,
                            std::function<void(json)> tell)
-    : scene_(std::move(scene)),
-      settings_(std::move(settings)),
+    : settings_(std::move(settings)),
+      opened_(std::move(scene)),
+      scene_(opened_),
       observed_(ensemble::observed_values(*scene_)),
       tell_(std::move(tell)) {
-    json why_not;
-    if (observed_.empty()) {
-        why_not =
-            "This scene has no field observations to calibrate against. Add [[observation]], [[run_up]], "
-            "[[deposit_depth]] or another of the sections in docs/ensembles.md to its file and open it again.";
-    } else if (settings_.source.file.empty()) {
-        why_not = "This program serves the scene without calibrations.";
-    }
     status_ = {{"state", "idle"},
-               {"why_not", why_not},
+               {"why_not", why_none(observed_, settings_.source)},
                {"by", nullptr},
                {"message", ""},
                {"observations", observations_json(observed_)},
@@ -185,6 +161,7 @@ void Calibrations::start(const json& wanted, const std::string& by, const Respon
         return;
     }
     if (thread_.joinable()) thread_.join();  // it has ended
+    take_observations();
     busy_ = true;
     stop_ = false;
     thread_ = std::thread([this, plan = std::move(*plan), by, respond] { work(plan, by, respond); });
@@ -223,10 +200,13 @@ void Calibrations::work(calibrate::CalibrationPlan plan, const std::string& by, 
             }
             respond(error_response(400, why));
         };
-        const Result<ensemble::PlannedRuns> runs = plan_calibration(plan, settings_.source, *scene_);
+        auto source = source_of_runs();
+        if (!source) return refuse(source.error().message);
+        source_ = std::move(*source);
+        const Result<ensemble::PlannedRuns> runs = plan_calibration(plan, source_, *scene_);
         if (!runs) return refuse(runs.error().message);
         if (plan.search.fast_runs > 0) {
-            auto fast = plan_fast_model(plan, settings_.source, *scene_);
+            auto fast = plan_fast_model(plan, source_, *scene_);
             if (!fast) return refuse(fast.error().message);
             plan.fast.emplace(*std::move(fast));
         }
@@ -250,22 +230,21 @@ void Calibrations::work(calibrate::CalibrationPlan plan, const std::string& by, 
 Calibrations::Ending Calibrations::calibrate_in(const fs::path& path, const calibrate::CalibrationPlan& plan,
                                                 const ensemble::PlannedRuns& runs) {
     const auto folder = ensemble::EnsembleFolder::open(
-        path,
-        calibration_definition("calibration", plan, runs, settings_.source, *scene_, observed_, settings_.scene_name));
+        path, calibration_definition("calibration", plan, runs, source_, *scene_, observed_, settings_.scene_name));
     if (!folder) return {"failed", folder.error().message};
     calibrate::CalibrationOptions options;
     options.stop_requested = &stop_;
     options.on_progress = [this](const calibrate::CalibrationProgress& now) { take_progress(now); };
     options.on_run = [this](const calibrate::CalibrationRun& run) { take_run(run); };
     options.on_fit = [this](const calibrate::Calibration& now) { take_fit(now); };
-    const auto made = calibrate::calibrate(plan, runs, settings_.source, *scene_, observed_, *folder, options);
+    const auto made = calibrate::calibrate(plan, runs, source_, *scene_, observed_, *folder, options);
     if (!made) return {"failed", made.error().message};
     if (!made->fault.empty()) return {"failed", made->fault};
     if (made->result.interrupted || stop_) return {"cancelled", ""};
     take_fit(*made);
     take_result(*made);
     if (!settings_.keep) return {"done", ""};
-    const Status written = write_calibration(*made, settings_.source, settings_.own_files, path);
+    const Status written = write_calibration(*made, source_, settings_.own_files, path);
     return {"done", written ? "" : written.error().message};
 }
 

@@ -8,6 +8,7 @@
 #include <mutex>
 #include <string>
 #include <thread>
+#include <vector>
 
 #include <nlohmann/json.hpp>
 
@@ -39,6 +40,8 @@ class Calibrations {
     Calibrations(const Calibrations&) = delete;
     Calibrations& operator=(const Calibrations&) = delete;
 
+    /// The observations of the first scenario, as its setup has them: the next calibration is against these.
+    void follow(const nlohmann::json& observations);
     /// Starts one according to the body of `POST /api/calibration`, and answers once it is known whether it can run.
     /// Errors (400, 409) name key, value and what is allowed.
     void start(const nlohmann::json& wanted, const std::string& by, const Respond& respond);
@@ -69,13 +72,25 @@ class Calibrations {
     void tell_now();
     [[nodiscard]] std::filesystem::path new_folder() const;
 
-    std::shared_ptr<const scene::Scene> scene_;
+    [[nodiscard]] static nlohmann::json observations_json(const std::vector<ensemble::ObservedValue>& observed);
+    /// A sentence; null: there can be one.
+    [[nodiscard]] static nlohmann::json why_none(const std::vector<ensemble::ObservedValue>& observed,
+                                                 const run::SceneSource& source);
+    /// Under the lock, while none runs: takes the observations that are followed.
+    void take_observations();
+    /// Loads the scene with these observations. Errors: it cannot be read or written.
+    [[nodiscard]] Result<run::SceneSource> source_of_runs() const;
+
     const CalibrationSettings settings_;
-    const std::vector<ensemble::ObservedValue> observed_;
+    const std::shared_ptr<const scene::Scene> opened_;
+    std::shared_ptr<const scene::Scene> scene_;  // with the observations; changes only while none runs, as the next
+    std::vector<ensemble::ObservedValue> observed_;
+    run::SceneSource source_;  // of the present calibration
     std::function<void(nlohmann::json)> tell_;
     std::atomic<bool> stop_{false};
-    mutable std::mutex mutex_;  // guards the following members
-    nlohmann::json status_;     // as describe() gives it
+    mutable std::mutex mutex_;         // guards the following members
+    nlohmann::json status_;            // as describe() gives it
+    nlohmann::json followed_, taken_;  // observations of the setup; null: those of the scene
     bool busy_ = false, closed_ = false;
     Clock::time_point told_{};
     std::thread thread_;

@@ -10,6 +10,8 @@
 
 #include "core/try.hpp"
 #include "geo/longitude_latitude.hpp"
+#include "products/text_file.hpp"
+#include "scene/bundle.hpp"
 #include "serve/api.hpp"
 #include "serve/json_text.hpp"
 
@@ -20,12 +22,14 @@ namespace fs = std::filesystem;
 using nlohmann::json;
 
 /// What a run must have for a file to be written.
-enum class Needs { nothing, erosion, gauges, globe };
+enum class Needs { nothing, erosion, gauges, globe, source };
 
 struct ExportFile {
     const char *name = nullptr, *type = nullptr, *what = nullptr;
     Needs needs = Needs::nothing;
 };
+
+constexpr const char* scene_zip = "scene.zip";
 
 // The files of a run; requested names are checked against these, so none leads out of the folder.
 constexpr ExportFile export_files[] = {
@@ -43,6 +47,9 @@ constexpr ExportFile export_files[] = {
     {"results.kml", "application/vnd.google-earth.kml+xml",
      "Inundation, arrival times and structures hit, for Google Earth and phones", Needs::globe},
     {"stac_item.json", "application/geo+json", "Place, time, software and files, for catalogues of geodata"},
+    {scene_zip, "application/zip",
+     "The scene and its files, with the gauges, observations, triggers and alarms of this scenario, for talus run",
+     Needs::source},
     {"manifest.json", "application/json", "All parameters, versions, checksums and the result's hash"},
     {"peak_depth.tif", "image/tiff", "Peak flow depth, m"},
     {"peak_depth.qml", "application/xml", "QGIS style of it"},
@@ -72,7 +79,7 @@ const ExportFile* find_file(const std::string& name) {
 }
 
 /// Why a run has no such file; empty: it has one.
-std::string why_none(const ExportFile& file, const twin::Scenario& run) {
+std::string why_none(const ExportFile& file, const twin::Scenario& run, const run::SceneSource& source) {
     switch (file.needs) {
         case Needs::nothing:
             return "";
@@ -80,6 +87,8 @@ std::string why_none(const ExportFile& file, const twin::Scenario& run) {
             return run.has_erosion() ? "" : "nothing was entrained";
         case Needs::gauges:
             return run.scene().gauges.empty() ? "the scene has no gauges" : "";
+        case Needs::source:
+            return source.file.empty() ? "this program does not serve the scene's file" : "";
         case Needs::globe:
             return geo::to_wgs84(run.scene().crs) ? ""
                                                   : "the terrain's reference system is local, without a place on Earth";
@@ -87,10 +96,10 @@ std::string why_none(const ExportFile& file, const twin::Scenario& run) {
     return "";
 }
 
-std::vector<const ExportFile*> files_of(const twin::Scenario& run) {
+std::vector<const ExportFile*> files_of(const twin::Scenario& run, const run::SceneSource& source) {
     std::vector<const ExportFile*> files;
     for (const ExportFile& file : export_files) {
-        if (why_none(file, run).empty()) files.push_back(&file);
+        if (why_none(file, run, source).empty()) files.push_back(&file);
     }
     return files;
 }
@@ -134,7 +143,8 @@ struct Exports::Snapshot {
     }
 };
 
-Exports::Exports(Session& session, fs::path folder) : session_(session), folder_(std::move(folder)) {}
+Exports::Exports(Session& session, fs::path folder, run::SceneSource source)
+    : session_(session), folder_(std::move(folder)), source_(std::move(source)) {}
 Exports::~Exports() = default;
 
 void Exports::close() {
@@ -156,15 +166,15 @@ void Exports::list(const std::string& scenario, const Respond& respond) {
         }
         const bool current = is_current(*index, all.at(*index));
         writer_->post([taken = current ? taken_[static_cast<std::size_t>(*index)] : nullptr,
-                       present = files_of(all.at(*index)), respond] {
+                       present = files_of(all.at(*index), source_), respond] {
             json files = json::array();
             const bool written = taken && !taken->products;
             for (const ExportFile* file : present) {
                 std::error_code error;
-                const auto bytes = written ? fs::file_size(taken->folder / file->name, error) : 0;
+                const bool known = written && file->needs != Needs::source;  // that is written when it is asked for
+                const auto bytes = known ? fs::file_size(taken->folder / file->name, error) : 0;
                 if (error) continue;  // this run has none
-                files.push_back(
-                    {{"name", file->name}, {"bytes", written ? json(bytes) : json()}, {"what", file->what}});
+                files.push_back({{"name", file->name}, {"bytes", known ? json(bytes) : json()}, {"what", file->what}});
             }
             respond(json_response(200, {{"files", files}}));
         });
@@ -185,10 +195,11 @@ void Exports::file(const std::string& scenario, const std::string& name, const R
         }
         SnapshotPtr& taken = taken_[static_cast<std::size_t>(*index)];
         const twin::Scenario& run = all.at(*index);
-        if (const std::string why = why_none(*wanted, run); !why.empty()) {
+        if (const std::string why = why_none(*wanted, run, source_); !why.empty()) {
             respond(error_response(404, fmt::format("there is no {}: {}", wanted->name, why)));
             return;
         }
+        if (wanted->needs == Needs::source) return scene_archive(run, respond);
         if (!is_current(*index, run)) {
             auto fresh = std::make_shared<Snapshot>();
             fresh->step = run.step();
@@ -205,6 +216,25 @@ void Exports::file(const std::string& scenario, const std::string& name, const R
             respond(written ? read_file(taken->folder / wanted->name, *wanted)
                             : error_response(500, written.error().message));
         });
+    });
+}
+
+void Exports::scene_archive(const twin::Scenario& scenario, const Respond& respond) {
+    const fs::path folder = folder_ / fmt::format("scene{}", ++count_);
+    writer_->post([folder, source = source_, text = scenario.scene_text(), respond] {
+        const auto made = [&]() -> Status {
+            TALUS_ASSIGN(const std::string scene, text(source.file, source.overrides));
+            std::error_code error;
+            fs::create_directories(folder, error);
+            if (error) return Error{fmt::format("{}: {}", folder.string(), error.message())};
+            TALUS_TRY(products::write_text_file(folder / "scene.toml", scene));
+            TALUS_TRY(scene::write_bundle(folder / "scene.toml", folder / scene_zip));
+            return {};
+        }();
+        respond(made ? read_file(folder / scene_zip, *find_file(scene_zip))
+                     : error_response(500, made.error().message));
+        std::error_code ignored;
+        fs::remove_all(folder, ignored);
     });
 }
 

@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <string>
 
+#include "run/variants.hpp"
 #include "serve/session.hpp"
 #include "serve/worker.hpp"
 
@@ -15,7 +16,8 @@ namespace talus::serve {
 class Exports {
   public:
     /// `folder`: an existing one to write into; it is not removed.
-    Exports(Session& session, std::filesystem::path folder);
+    /// `source`: loads the session's scene again; no file: there is no scene.zip.
+    Exports(Session& session, std::filesystem::path folder, run::SceneSource source);
     ~Exports();
     /// Ends its thread; pending requests are not answered. The session must have been closed before.
     void close();
@@ -32,8 +34,11 @@ class Exports {
     using SnapshotPtr = std::shared_ptr<Snapshot>;
     [[nodiscard]] bool is_current(int index, const twin::Scenario& scenario) const;
 
+    void scene_archive(const twin::Scenario& scenario, const Respond& respond);
+
     Session& session_;
     std::filesystem::path folder_;
+    run::SceneSource source_;
     std::array<SnapshotPtr, Scenarios::max_count> taken_;  // the latest; used by the loop's thread only
     std::uint64_t count_ = 0;                              // of folders, for their names; likewise
     std::unique_ptr<Worker> writer_ = std::make_unique<Worker>("exports");

@@ -10,7 +10,7 @@ namespace talus::serve {
 
 OpenSession::OpenSession(Thread thread, std::shared_ptr<const scene::Scene> scene, const ServerOptions& options)
     : session(std::move(thread), scene, options.tokens),
-      exports(session, options.export_folder),
+      exports(session, options.export_folder, options.calibration.source),
       calibrations(scene, options.calibration,
                    [this](nlohmann::json status) { session.calibration(std::move(status)); }),
       alerts(session, std::move(scene), options.alerts),
@@ -24,6 +24,10 @@ Result<OpenSessionPtr> OpenSession::open(Thread thread, const std::shared_ptr<co
     auto made = std::make_shared<OpenSession>(std::move(thread), scene, options);
     TALUS_ASSIGN(made->ensembles, Ensembles::read(options.ensembles, *scene));
     const auto on_failure = options.on_failure ? options.on_failure : [](const std::string&) {};
+    made->session.on_first_setup([raw = made.get()](const nlohmann::json& setup) {
+        raw->alerts.follow_triggers(setup["triggers"]);
+        raw->calibrations.follow(setup["observations"]);
+    });
     TALUS_TRY(made->session.open(options.scenario, on_failure));
     made->session.calibration(made->calibrations.describe());
     made->router =
@@ -33,8 +37,9 @@ Result<OpenSessionPtr> OpenSession::open(Thread thread, const std::shared_ptr<co
     add_depth_averaged_routes(made->router, made->session, made->depth_averaged);
     TALUS_TRY(made->alerts.open());
     const auto shared = std::make_shared<std::vector<OpeningScenario>>(std::move(scenarios));
-    made->session.loop().post([shared, run = options.run](Scenarios& all) {
+    made->session.loop().post([shared, raw = made.get(), run = options.run](Scenarios& all) {
         for (OpeningScenario& one : *shared) all.put(one.index, std::move(one.scenario), one.title);
+        raw->session.setup(0, all.setup(0));
         if (run) all.act(0, {{"action", "run"}}, "", [](const Result<twin::Done>&) {});
     });
     return made;

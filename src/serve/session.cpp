@@ -251,6 +251,11 @@ void Session::state(int scenario, json state) {
 }
 
 void Session::setup(int scenario, json setup) {
+    if (scenario == 0) {
+        thread_.post([this, setup] {
+            if (on_first_setup_) on_first_setup_(setup);
+        });
+    }
     thread_.post([this, scenario, text = message_text("setup", std::move(setup))] {
         setups_[static_cast<std::size_t>(scenario)] = text;
         for (const auto& [viewer, view] : viewers_) viewer->send(text);

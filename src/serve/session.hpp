@@ -83,6 +83,9 @@ class Session final : public Watcher {
     void alerts(nlohmann::json status);
     /// Who is told, on the server's thread, of the alerts of runs.
     void on_alerts(std::function<void(int scenario, const RunAlerts&)> listener) { on_alerts_ = std::move(listener); }
+    /// Who is told, on the server's thread, of every setup of the first scenario: what is not of one run is as it has
+    /// it.
+    void on_first_setup(std::function<void(const nlohmann::json&)> listener) { on_first_setup_ = std::move(listener); }
     /// For the server's thread, from any other.
     void post(std::function<void()> task) { thread_.post(std::move(task)); }
 
@@ -122,6 +125,7 @@ class Session final : public Watcher {
     std::array<Bytes, Scenarios::max_count> states_, setups_;  // as messages; for those who join
     Bytes calibration_, alerts_, overlays_;                    // likewise
     std::function<void(int, const RunAlerts&)> on_alerts_;
+    std::function<void(const nlohmann::json&)> on_first_setup_;
     std::array<Bytes, Scenarios::max_count> depth_averaged_;  // likewise
     std::function<void()> setups_changed_ = [] {};
     std::vector<Audience> audience_;

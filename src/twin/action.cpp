@@ -40,6 +40,8 @@ class ActionReader {
     Status put_inflow();
     Status put_gauge();
     Status put_note();
+    /// An observation, a trigger or an alarm.
+    Status put_table(TableKind kind, const char* what);
     template <class Entries>
     Status remove(Entries& entries, const char* what);
 
@@ -100,6 +102,9 @@ const std::string& name_of(const terrain::Gauge& gauge) {
 }
 const std::string& name_of(const Note& note) {
     return note.name;
+}
+std::string name_of(const TableEntry& entry) {
+    return entry.name();
 }
 
 Result<std::string> ActionReader::id() const {
@@ -326,6 +331,18 @@ Status ActionReader::put_note() {
         [](const NoteSetup&, const NoteSetup* existing) { return existing != nullptr ? " changed" : " pinned"; });
 }
 
+Status ActionReader::put_table(TableKind kind, const char* what) {
+    return put(
+        edit_.setup.tables(kind), what, next_.of(kind),
+        [&](const TableSetup* existing, const std::string& name) {
+            return read_table_action(action_, context_, edit_.setup, kind, existing, name);
+        },
+        [](TableEntry entry) {
+            return TableSetup{"", std::make_shared<const TableEntry>(std::move(entry)), false};
+        },
+        [](const TableSetup&, const TableSetup* existing) { return existing != nullptr ? " changed" : " added"; });
+}
+
 Status ActionReader::trigger_release() {
     TALUS_TRY(check_keys(action_, {"action", "id"}));
     TALUS_ASSIGN(const auto given, id());
@@ -390,6 +407,12 @@ Result<Edit> read_action(const json& action, const Setup& setup, NextNumbers& ne
         {"remove_gauge", [&] { return reader.remove(changed.gauges, "gauge"); }},
         {"put_note", [&] { return reader.put_note(); }},
         {"remove_note", [&] { return reader.remove(changed.notes, "note"); }},
+        {"put_observation", [&] { return reader.put_table(TableKind::observation, "observation"); }},
+        {"remove_observation", [&] { return reader.remove(changed.observations, "observation"); }},
+        {"put_trigger", [&] { return reader.put_table(TableKind::trigger, "trigger"); }},
+        {"remove_trigger", [&] { return reader.remove(changed.triggers, "trigger"); }},
+        {"put_alarm", [&] { return reader.put_table(TableKind::alarm, "alarm"); }},
+        {"remove_alarm", [&] { return reader.remove(changed.alarms, "alarm"); }},
     };
     const auto wanted = std::find_if(std::begin(actions), std::end(actions),
                                      [&](const auto& action_and_work) { return action_and_work.first == name; });

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -14,18 +15,12 @@ namespace {
 constexpr double look_interval = 0.1;  // s of simulated time between two looks
 constexpr double lately = 1;           // s, a front that reached nothing new for so long does not advance
 
-/// The id of a structure of the scene in its setups.
-std::string id_of(const scene::Scene& scene, const std::string& structure) {
-    if (structure.empty()) return "";
-    NextNumbers next;
-    const Setup setup = setup_of(scene, next);
-    for (const BuildingSetup& building : setup.buildings) {
-        if (building.body->name == structure) return building.id;
-    }
-    for (const BarrierSetup& barrier : setup.barriers) {
-        if (barrier.body->name == structure) return barrier.id;
-    }
-    return "";
+/// The ids of structures by name.
+std::map<std::string, std::string> ids_of(const Setup& setup) {
+    std::map<std::string, std::string> ids;
+    for (const BuildingSetup& building : setup.buildings) ids.emplace(building.body->name, building.id);
+    for (const BarrierSetup& barrier : setup.barriers) ids.emplace(barrier.body->name, barrier.id);
+    return ids;
 }
 
 /// As it is now in the setup; nullptr: it was removed.
@@ -48,8 +43,35 @@ double depth_at(const observe::MapAccumulator& maps, const PlanPoint& p) {
 
 }  // namespace
 
-AlarmWatch::AlarmWatch(const scene::Scene& scene) : waiting_(scene.spec.alarms.size()) {
-    for (const params::AlarmSpec& spec : scene.spec.alarms) rules_.push_back({spec, id_of(scene, spec.structure)});
+AlarmWatch::AlarmWatch(const scene::Scene& scene) {
+    NextNumbers next;
+    scene_ids_ = ids_of(setup_of(scene, next));
+}
+
+void AlarmWatch::watch(const Setup& setup) {
+    const std::map<std::string, std::string> ids = ids_of(setup);
+    // A structure of the scene that has another name in the setup keeps its alarms.
+    const auto id_of = [&](const std::string& structure) {
+        const auto now = ids.find(structure);
+        if (now != ids.end()) return now->second;
+        const auto then = scene_ids_.find(structure);
+        return then != scene_ids_.end() ? then->second : std::string();
+    };
+    std::vector<Rule> rules;
+    for (const TableSetup& alarm : setup.alarms) {
+        Rule* before = find_id(rules_, alarm.id);
+        if (before != nullptr && same_values(*before->body, *alarm.body)) {
+            rules.push_back(std::move(*before));
+            continue;
+        }
+        params::SceneSpec spec;
+        put_entries(spec, TableKind::alarm, {*alarm.body});
+        const std::string obstacle = id_of(spec.alarms.front().structure);
+        rules.push_back({alarm.id, alarm.body, std::move(spec.alarms.front()), obstacle});
+    }
+    rules_ = std::move(rules);
+    waiting_ = static_cast<std::size_t>(
+        std::count_if(rules_.begin(), rules_.end(), [](const Rule& rule) { return !rule.raised; }));
 }
 
 AlarmWatch::Front AlarmWatch::front_of(const LiveRun& run) {

@@ -2,18 +2,21 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <map>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "params/spec.hpp"
 #include "scene/scene.hpp"
+#include "twin/setup.hpp"
 
 namespace talus::twin {
 
 class LiveRun;
 
-/// An alarm of the scene that a run has raised.
+/// An alarm of the setup that a run has raised.
 struct RaisedAlarm {
     std::string name;
     std::string sentence;  ///< "front at chainage 212 m, 48 m before House 38"
@@ -25,11 +28,14 @@ struct RaisedAlarm {
     std::uint64_t hash = 0;  ///< of the state after that step
 };
 
-/// Watches a run for the alarms of its scene: each is raised once. Depends only on the run, so a replay raises the
+/// Watches a run for the alarms of its setup: each is raised once. Depends only on the run, so a replay raises the
 /// same.
 class AlarmWatch {
   public:
     explicit AlarmWatch(const scene::Scene& scene);
+
+    /// From now on for the alarms of this setup: one that is new or changed can be raised.
+    void watch(const Setup& setup);
 
     /// After every step.
     void check(const LiveRun& run);
@@ -37,6 +43,8 @@ class AlarmWatch {
 
   private:
     struct Rule {
+        std::string id;
+        std::shared_ptr<const TableEntry> body;
         params::AlarmSpec spec;
         std::string obstacle;  ///< its id in the setup; empty: the place is none
         bool raised = false;
@@ -56,6 +64,7 @@ class AlarmWatch {
     [[nodiscard]] static std::optional<Finding> load(const Rule& rule, const LiveRun& run);
     [[nodiscard]] static std::optional<Finding> find(const Rule& rule, const LiveRun& run);
 
+    std::map<std::string, std::string> scene_ids_;  ///< of its structures, by the names in the scene
     std::vector<Rule> rules_;
     std::size_t waiting_ = 0;  ///< rules not raised
     double next_look_ = 0;     ///< s

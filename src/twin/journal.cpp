@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <initializer_list>
 #include <string_view>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -93,7 +94,10 @@ json write_journal(const Journal& journal) {
               {"bed", journal.next.bed},
               {"inflow", journal.next.inflow},
               {"gauge", journal.next.gauge},
-              {"note", journal.next.note}}},
+              {"note", journal.next.note},
+              {"observation", journal.next.observation},
+              {"trigger", journal.next.trigger},
+              {"alarm", journal.next.alarm}}},
             {"actions", actions},
             {"last",
              {{"step", journal.steps},
@@ -126,13 +130,19 @@ Result<Journal> read_journal(const std::string& text) {
     }
     journal.first_setup = read.object(file, "first_setup");
     const json& next = read.object(file, "next");
-    read.keys(next, "next", {"release", "barrier", "building", "zone", "bed", "inflow", "gauge", "note"});
+    read.keys(next, "next",
+              {"release", "barrier", "building", "zone", "bed", "inflow", "gauge", "note", "observation", "trigger",
+               "alarm"});
     journal.next = {static_cast<int>(read.whole(next, "release")),  static_cast<int>(read.whole(next, "barrier")),
                     static_cast<int>(read.whole(next, "building")), static_cast<int>(read.whole(next, "zone")),
                     static_cast<int>(read.whole(next, "bed")),      static_cast<int>(read.whole(next, "inflow"))};
-    // Journals did not always have gauges and notes.
-    if (next.contains("gauge")) journal.next.gauge = static_cast<int>(read.whole(next, "gauge"));
-    if (next.contains("note")) journal.next.note = static_cast<int>(read.whole(next, "note"));
+    // Journals did not always have these.
+    for (const auto& [key, number] :
+         {std::pair("gauge", &journal.next.gauge), std::pair("note", &journal.next.note),
+          std::pair("observation", &journal.next.observation), std::pair("trigger", &journal.next.trigger),
+          std::pair("alarm", &journal.next.alarm)}) {
+        if (next.contains(key)) *number = static_cast<int>(read.whole(next, key));
+    }
     std::uint64_t before = 0;
     for (const json& entry : read.list(file, "actions")) {
         read.keys(entry, "actions", {"step", "by", "action", "setup"});

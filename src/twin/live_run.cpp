@@ -26,6 +26,7 @@ LiveRun::LiveRun(std::unique_ptr<run::Run> run, const scene::Scene& scene, Setup
     for (const ReleaseSetup& release : setup_.releases) groups_.push_back({release.id, false});
     for (const BuildingSetup& building : setup_.buildings) obstacles_.push_back({building.id, building.body});
     for (const BarrierSetup& barrier : setup_.barriers) obstacles_.push_back({barrier.id, barrier.body, true});
+    alarms_.watch(setup_);
     record();
 }
 

@@ -318,6 +318,7 @@ void LiveRun::put_in_force(Change& change) {
 void LiveRun::carry_out(Change& change) {
     run_->threads().execute([&] { put_in_force(change); });
     setup_ = std::move(change.next);
+    alarms_.watch(setup_);
 }
 
 Status LiveRun::bring_to(const Setup& next) {

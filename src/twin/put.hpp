@@ -13,6 +13,7 @@
 #include "terrain/release.hpp"
 #include "twin/action.hpp"
 #include "twin/setup.hpp"
+#include "twin/table_entry.hpp"
 
 /// The put actions of docs/protocol.md. Each returns `existing` with the values of the action, or a new one if that is
 /// nullptr, with this name. Errors name key, value and what is allowed.
@@ -48,6 +49,12 @@ namespace talus::twin {
 /// Errors: without a text, or beside the terrain.
 [[nodiscard]] Result<Note> read_note(const nlohmann::json& action, const ActionContext& context, const Note* existing,
                                      const std::string& name);
+
+/// An entry of `[[section]]`: the values of the action in place of those that are there. Errors: no such section; as
+/// the reader of a scene file.
+[[nodiscard]] Result<TableEntry> read_table_action(const nlohmann::json& action, const ActionContext& context,
+                                                   const Setup& setup, TableKind kind, const TableSetup* existing,
+                                                   const std::string& name);
 
 /// Particles of all sources of debris, with this inflow in place of `existing`; `spacing` in m.
 [[nodiscard]] double particles_in_all(const Setup& setup, const InflowSetup* existing, const terrain::Inflow& inflow,

@@ -125,8 +125,13 @@ Result<std::unique_ptr<Scenario>> Scenario::open_at(const Journal& journal, std:
     if (!setup) return Error{"first_setup: " + setup.error().message};
     auto parts = std::make_unique<Parts>(std::move(scene), std::move(options));
     parts->next = journal.next;
-    // Former journals have no number for gauges: those of the scene have the first ones.
-    parts->next.gauge = std::max(parts->next.gauge, static_cast<int>(parts->scene->gauges.size()) + 1);
+    // Former journals have no numbers for these: those of the scene have the first ones.
+    NextNumbers of_scene;
+    static_cast<void>(setup_of(*parts->scene, of_scene));
+    for (const auto number :
+         {&NextNumbers::gauge, &NextNumbers::observation, &NextNumbers::trigger, &NextNumbers::alarm}) {
+        parts->next.*number = std::max(parts->next.*number, of_scene.*number);
+    }
     TALUS_TRY(parts->start(*setup));
     return std::unique_ptr<Scenario>(new Scenario(std::move(parts)));
 }
@@ -148,10 +153,12 @@ std::function<Result<std::unique_ptr<Scenario>>(const sim::Progress&)> Scenario:
 }
 
 std::function<Result<std::unique_ptr<Scenario>>(const sim::Progress&)> Scenario::opening() const {
-    return [scene = parts_->scene, options = parts_->options](const sim::Progress& progress) {
+    return [scene = parts_->scene, options = parts_->options, now = parts_->setup(),
+            numbers = parts_->next](const sim::Progress& progress) {
         using Made = Result<std::unique_ptr<Scenario>>;
         auto parts = std::make_unique<Parts>(scene, options);
-        const Setup setup = setup_of(*scene, parts->next);
+        Setup setup = setup_of(*scene, parts->next);
+        take_tables(setup, parts->next, now, numbers);
         const Status started = parts->start(setup, progress);
         return started ? Made(std::unique_ptr<Scenario>(new Scenario(std::move(parts)))) : Made(started.error());
     };
@@ -345,6 +352,10 @@ const sim::State& Scenario::state() const {
 }
 const observe::Observer& Scenario::observer() const {
     return parts_->run->observer();
+}
+
+std::vector<params::TriggerSpec> Scenario::triggers() const {
+    return triggers_of(parts_->setup());
 }
 
 const std::vector<RaisedAlarm>& Scenario::alarms() const {

@@ -8,6 +8,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include <nlohmann/json.hpp>
@@ -71,7 +72,8 @@ class Scenario {
     [[nodiscard]] Result<std::unique_ptr<Scenario>> copy() const { return copying()({}); }
     /// The work of that, for any thread, while this scenario continues.
     [[nodiscard]] std::function<Result<std::unique_ptr<Scenario>>(const sim::Progress&)> copying() const;
-    /// The work of opening the scene as its file has it, without anybody's changes, for any thread.
+    /// The work of opening the scene as its file has it, without anybody's changes but to observations, triggers and
+    /// alarms, for any thread.
     [[nodiscard]] std::function<Result<std::unique_ptr<Scenario>>(const sim::Progress&)> opening() const;
     ~Scenario();
     Scenario(const Scenario&) = delete;
@@ -105,6 +107,7 @@ class Scenario {
     [[nodiscard]] const sim::State& state() const;
     [[nodiscard]] const observe::Observer& observer() const;
 
+    [[nodiscard]] std::vector<params::TriggerSpec> triggers() const;
     /// Raised by the run so far.
     [[nodiscard]] const std::vector<RaisedAlarm>& alarms() const;
     /// The action of the trigger that started this run; nullptr: people did.
@@ -154,6 +157,13 @@ class Scenario {
     [[nodiscard]] std::function<Status(const std::filesystem::path& folder)> products() const;
     /// The moving flow of the run so far (recorded_flow.hpp). It copies the results.
     [[nodiscard]] std::shared_ptr<const RecordedFlow> flow() const;
+
+    /// The scene with the present setup, and the result of the run so far.
+    [[nodiscard]] std::function<std::pair<scene::Scene, run::RunResult>()> outcome() const;
+    /// As scene_text_with(), of the present setup. `file`, `overrides`: of the scene.
+    [[nodiscard]] std::function<Result<std::string>(const std::filesystem::path& file,
+                                                    const std::vector<std::string>& overrides)>
+    scene_text() const;
 
     // The depth-averaged model of the present setup, beside this run (depth_averaged.hpp).
 

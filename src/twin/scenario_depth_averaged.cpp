@@ -122,6 +122,7 @@ json compared(const scene::Scene& scene, const run::RunResult& particles, const 
 
 std::string Scenario::setup_key() const {
     json key = write_setup(parts_->setup());
+    for (const char* beside : {"observations", "triggers", "alarms"}) key.erase(beside);
     key["starts"] = json::array();
     for (const ReleaseSetup& release : parts_->setup().releases) {
         key["starts"].push_back(number_or_null<json>(parts_->run->start_time_of(release.id)));

@@ -17,6 +17,7 @@
 #include "twin/gauges_json.hpp"
 #include "twin/json_keys.hpp"
 #include "twin/scenario_parts.hpp"
+#include "twin/table_entry.hpp"
 
 namespace talus::twin {
 namespace {
@@ -173,14 +174,6 @@ json Scenario::scene_json() const {
     const auto [lowest, highest] = elevation_range(scene.terrain);
     const GridGeometry& map = run.observer().maps().geometry();
     const auto latitude = geo::latitude_deg(scene.crs, {0.5 * (e.x_min + e.x_max), 0.5 * (e.y_min + e.y_max)});
-    json observations = json::array();
-    for (const params::ObservationSpec& o : scene.spec.observations) {
-        observations.push_back({{"name", o.name},
-                                {"chainage_m", o.chainage},
-                                {"quantity", o.key()},
-                                {"observed_mps", o.value()},
-                                {"source", o.source}});
-    }
     return {{"title", scene.spec.scene.title},
             {"description", scene.spec.scene.description},
             {"reconstruction", scene.spec.scene.reconstruction},
@@ -204,7 +197,7 @@ json Scenario::scene_json() const {
             {"end_time_s", scene.spec.solver.end_time},
             {"gravity_mps2", model.gravity},
             {"flow_path", flow_path_json(scene)},
-            {"observations", observations},
+            {"table_sections", table_sections_json()},
             {"gauges", gauge_places(scene.gauges)},
             {"cross_sections", section_places(scene.cross_sections)},
             {"parameters", live_parameters_json(scene, model, parts_->setup().material)},

@@ -17,6 +17,7 @@
 #include "twin/past_maps.hpp"
 #include "twin/recorded_flow.hpp"
 #include "twin/scenario_parts.hpp"
+#include "twin/scene_copy.hpp"
 
 // What a scenario has to show: layers of the map, figures, the products of a run.
 
@@ -102,6 +103,18 @@ std::pair<scene::Scene, run::RunResult> Scenario::Parts::outcome() const {
     run::RunResult result = run->result();
     run::take_followed_path(told, result);
     return {std::move(told), std::move(result)};
+}
+
+std::function<std::pair<scene::Scene, run::RunResult>()> Scenario::outcome() const {
+    return [outcome = parts_->outcome()] { return outcome; };
+}
+
+std::function<Result<std::string>(const std::filesystem::path&, const std::vector<std::string>&)> Scenario::scene_text()
+    const {
+    return [setup = parts_->setup(), scene = parts_->scene](
+               const std::filesystem::path& file, const std::vector<std::string>& overrides) -> Result<std::string> {
+        return scene_text_with(file, overrides, setup, *scene);
+    };
 }
 
 std::function<json()> Scenario::figures() const {

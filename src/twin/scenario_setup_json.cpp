@@ -179,6 +179,9 @@ json Scenario::setup_json() const {
             {"inflows", inflows},
             {"gauges", gauges},
             {"notes", notes},
+            {"observations", tables_json(setup.observations)},
+            {"triggers", tables_json(setup.triggers)},
+            {"alarms", tables_json(setup.alarms)},
             {"pending_restart", !begin_alike(setup, p.run->begun_with())},
             {"undo", p.undo.empty() ? json() : json(p.undo.back().sentence)},
             {"redo", p.redo.empty() ? json() : json(p.redo.back().sentence)}};

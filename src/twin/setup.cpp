@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -21,6 +22,33 @@ params::ReleaseSpec beside_thickness(params::ReleaseSpec spec) {
 }
 
 }  // namespace
+
+std::vector<TableSetup>& Setup::tables(TableKind kind) {
+    return kind == TableKind::observation ? observations : kind == TableKind::trigger ? triggers : alarms;
+}
+
+const std::vector<TableSetup>& Setup::tables(TableKind kind) const {
+    return kind == TableKind::observation ? observations : kind == TableKind::trigger ? triggers : alarms;
+}
+
+int& NextNumbers::of(TableKind kind) {
+    return kind == TableKind::observation ? observation : kind == TableKind::trigger ? trigger : alarm;
+}
+
+std::vector<params::TriggerSpec> triggers_of(const Setup& setup) {
+    params::SceneSpec spec;
+    put_entries(spec, TableKind::trigger, bodies_of(setup.triggers));
+    return std::move(spec.triggers);
+}
+
+void take_tables(Setup& setup, NextNumbers& next, const Setup& from, const NextNumbers& from_next) {
+    setup.observations = from.observations;
+    setup.triggers = from.triggers;
+    setup.alarms = from.alarms;
+    next.observation = from_next.observation;
+    next.trigger = from_next.trigger;
+    next.alarm = from_next.alarm;
+}
 
 Setup setup_of(const scene::Scene& scene, NextNumbers& next) {
     Setup setup;
@@ -61,6 +89,13 @@ Setup setup_of(const scene::Scene& scene, NextNumbers& next) {
         setup.gauges.push_back(
             {fmt::format("gauge-{}", next.gauge++), std::make_shared<const terrain::Gauge>(gauge), index++, true});
     }
+    for (const auto& [kind, name] : {std::pair(TableKind::observation, "observation"),
+                                     std::pair(TableKind::trigger, "trigger"), std::pair(TableKind::alarm, "alarm")}) {
+        for (TableEntry& entry : entries_of(scene.spec, kind)) {
+            setup.tables(kind).push_back({fmt::format("{}-{}", name, next.of(kind)++),
+                                          std::make_shared<const TableEntry>(std::move(entry)), true});
+        }
+    }
     return setup;
 }
 
@@ -82,6 +117,9 @@ scene::Scene scene_of(const scene::Scene& scene, const Setup& setup) {
     changed.bed = lay_bed(changed.bed_layers, changed.terrain);
     changed.spec.beds.clear();
     for (const scene::BedLayer& layer : changed.bed_layers) changed.spec.beds.push_back(layer.spec);
+    for (const TableKind kind : {TableKind::observation, TableKind::trigger, TableKind::alarm}) {
+        put_entries(changed.spec, kind, bodies_of(setup.tables(kind)));
+    }
     return changed;
 }
 

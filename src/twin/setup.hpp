@@ -16,6 +16,7 @@
 #include "terrain/gauge.hpp"
 #include "terrain/inflow.hpp"
 #include "terrain/release.hpp"
+#include "twin/table_entry.hpp"
 
 /// The part of a run that users can change during the run: a plain value. Bodies are shared between setups, so copies
 /// are cheap.
@@ -86,6 +87,13 @@ struct NoteSetup {
     std::shared_ptr<const Note> body;
 };
 
+/// An observation, a trigger or an alarm.
+struct TableSetup {
+    std::string id;
+    std::shared_ptr<const TableEntry> body;
+    bool from_scene = false;
+};
+
 struct Setup {
     params::MaterialSpec material;
     std::vector<ReleaseSetup> releases;
@@ -96,15 +104,28 @@ struct Setup {
     std::vector<InflowSetup> inflows;
     std::vector<GaugeSetup> gauges;
     std::vector<NoteSetup> notes;
+    std::vector<TableSetup> observations, triggers, alarms;
+
+    [[nodiscard]] std::vector<TableSetup>& tables(TableKind kind);
+    [[nodiscard]] const std::vector<TableSetup>& tables(TableKind kind) const;
 };
 
 /// Numbers of the next new ids; an id is never used twice.
 struct NextNumbers {
-    int release = 1, barrier = 1, building = 1, zone = 1, bed = 1, inflow = 1, gauge = 1, note = 1;
+    int release = 1, barrier = 1, building = 1, zone = 1, bed = 1, inflow = 1, gauge = 1, note = 1, observation = 1,
+        trigger = 1, alarm = 1;
+
+    [[nodiscard]] int& of(TableKind kind);
 };
 
 /// The scene as it was loaded; `next` is set to follow it.
 [[nodiscard]] Setup setup_of(const scene::Scene& scene, NextNumbers& next);
+
+/// Of the setup, as the scene has them.
+[[nodiscard]] std::vector<params::TriggerSpec> triggers_of(const Setup& setup);
+
+/// The observations, triggers and alarms of another scenario of the scene, with their numbers.
+void take_tables(Setup& setup, NextNumbers& next, const Setup& from, const NextNumbers& from_next);
 
 /// The scene with the parts of a setup instead of its own.
 [[nodiscard]] scene::Scene scene_of(const scene::Scene& scene, const Setup& setup);
@@ -155,7 +176,8 @@ template <class Entry>
 /// Whether runs of both would begin with the same beds, inflows and gauges.
 [[nodiscard]] bool begin_alike(const Setup& a, const Setup& b);
 
-/// Whether debris moves in the same way with both: they differ in names, gauges and notes at most.
+/// Whether debris moves in the same way with both: they differ in names, gauges, notes, observations,
+/// triggers and alarms at most.
 [[nodiscard]] bool move_alike(const Setup& a, const Setup& b);
 
 /// The keys of the material section that can change while debris moves, as declared for the scene file.

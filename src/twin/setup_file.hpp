@@ -1,6 +1,7 @@
 #pragma once
 
 #include <optional>
+#include <vector>
 
 #include <nlohmann/json.hpp>
 
@@ -12,6 +13,8 @@ namespace talus::twin {
 
 /// As in a setup file and in GET /api/scenarios/{s}/setup.
 [[nodiscard]] nlohmann::json note_json(const NoteSetup& note);
+
+[[nodiscard]] nlohmann::json tables_json(const std::vector<TableSetup>& entries);
 
 [[nodiscard]] nlohmann::json write_setup(const Setup& setup);
 

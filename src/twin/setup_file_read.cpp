@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -47,6 +48,7 @@ class SetupReader {
     Result<InflowSetup> read_inflow(const json& file) const;
     Result<GaugeSetup> read_gauge(const json& file) const;
     Result<NoteSetup> read_note(const json& file) const;
+    static Result<TableSetup> read_table(const json& file, TableKind kind);
 
   private:
     static Error bad(const char* key, const json& object) {
@@ -330,15 +332,23 @@ Result<NoteSetup> SetupReader::read_note(const json& file) const {
     return NoteSetup{file["id"], std::make_shared<const Note>(std::move(note))};
 }
 
+Result<TableSetup> SetupReader::read_table(const json& file, TableKind kind) {
+    TALUS_TRY(check_keys_and_id(file, {"id", "section", "name", "values", "from_scene"}));
+    TALUS_ASSIGN(TableEntry entry, read_table_entry(file, kind));
+    auto body = std::make_shared<const TableEntry>(std::move(entry));
+    return TableSetup{file["id"], std::move(body), file.value("from_scene", false)};
+}
+
 }  // namespace
 
 Result<Setup> read_setup(const json& file, const scene::Scene& scene) {
     if (!file.is_object()) return Error{fmt::format("setup = {}: must be an object", shown(file))};
-    const auto sections = {"material"sv, "releases"sv, "barriers"sv, "buildings"sv, "zones"sv,
-                           "beds"sv,     "inflows"sv,  "gauges"sv,   "notes"sv};
+    const auto sections = {"material"sv, "releases"sv, "barriers"sv, "buildings"sv,    "zones"sv,    "beds"sv,
+                           "inflows"sv,  "gauges"sv,   "notes"sv,    "observations"sv, "triggers"sv, "alarms"sv};
+    const auto later = {"gauges"sv, "notes"sv, "observations"sv, "triggers"sv, "alarms"sv};  // not in older journals
     for (const std::string_view key : sections) {
         if (!file.contains(key)) {
-            if (key == "gauges" || key == "notes") continue;  // journals did not always have them
+            if (std::find(later.begin(), later.end(), key) != later.end()) continue;
             return Error{fmt::format("setup.{}: missing", key)};
         }
         if (key != "material" && !file[key].is_array()) {
@@ -367,9 +377,18 @@ Result<Setup> read_setup(const json& file, const scene::Scene& scene) {
     TALUS_TRY(read_all(file["beds"], setup.beds, "beds", [&](const json& e) { return reader.read_bed(e); }));
     TALUS_TRY(
         read_all(file["inflows"], setup.inflows, "inflows", [&](const json& e) { return reader.read_inflow(e); }));
+    NextNumbers any;
+    const Setup of_scene = setup_of(scene, any);
+    for (const auto& [key, kind] : {std::pair("observations", TableKind::observation),
+                                    std::pair("triggers", TableKind::trigger), std::pair("alarms", TableKind::alarm)}) {
+        setup.tables(kind) = of_scene.tables(kind);
+        if (!file.contains(key)) continue;
+        setup.tables(kind).clear();
+        TALUS_TRY(read_all(file[key], setup.tables(kind), key,
+                           [kind = kind](const json& e) { return SetupReader::read_table(e, kind); }));
+    }
     if (!file.contains("gauges")) {
-        NextNumbers any;
-        setup.gauges = setup_of(scene, any).gauges;
+        setup.gauges = of_scene.gauges;
     } else {
         TALUS_TRY(
             read_all(file["gauges"], setup.gauges, "gauges", [&](const json& e) { return reader.read_gauge(e); }));

@@ -92,6 +92,18 @@ json note_json(const NoteSetup& note) {
     return {{"id", note.id}, {"name", note.body->name}, {"x_m", note.body->at.x}, {"y_m", note.body->at.y}};
 }
 
+json tables_json(const std::vector<TableSetup>& entries) {
+    json list = json::array();
+    for (const TableSetup& entry : entries) {
+        list.push_back({{"id", entry.id},
+                        {"section", entry.body->section},
+                        {"name", entry.body->name()},
+                        {"values", table_values_json(*entry.body)},
+                        {"from_scene", entry.from_scene}});
+    }
+    return list;
+}
+
 json write_setup(const Setup& setup) {
     json file = {{"material", material_json(setup.material)},
                  {"releases", json::array()},
@@ -101,7 +113,10 @@ json write_setup(const Setup& setup) {
                  {"beds", json::array()},
                  {"inflows", json::array()},
                  {"gauges", json::array()},
-                 {"notes", json::array()}};
+                 {"notes", json::array()},
+                 {"observations", tables_json(setup.observations)},
+                 {"triggers", tables_json(setup.triggers)},
+                 {"alarms", tables_json(setup.alarms)}};
     for (const ReleaseSetup& release : setup.releases) {
         json entry = entry_json(release);
         if (release.triggered) entry["triggered"] = true;

@@ -33,11 +33,11 @@ params::InflowSample rated_row(const std::vector<params::InflowSample>& rated, d
     return {time, discharge, peak.velocity * std::pow(discharge / peak.discharge, 0.4), peak.density};
 }
 
-Result<const params::TriggerSpec*> trigger_of(const json& action, const scene::Scene& scene) {
+Result<params::TriggerSpec> trigger_of(const json& action, const Setup& setup) {
     TALUS_ASSIGN(const auto name, read_text(action, "trigger"));
     std::vector<std::string> names;
-    for (const params::TriggerSpec& trigger : scene.spec.triggers) {
-        if (name && trigger.name == *name) return &trigger;
+    for (const params::TriggerSpec& trigger : triggers_of(setup)) {
+        if (name && trigger.name == *name) return trigger;
         names.push_back(trigger.name);
     }
     if (!name) return Error{"trigger: missing; it must be the name of a trigger of the scene"};
@@ -174,38 +174,38 @@ std::vector<params::InflowSample> with_reading(const std::vector<params::InflowS
 Result<Edit> read_trigger(const json& action, const Setup& setup, const ActionContext& context) {
     TALUS_TRY(check_keys(action, {"action", "trigger", "source", "received_at", "reason", "values"}));
     if (context.begun) return Error{"trigger: starts a run at time 0, and this one has begun"};
-    TALUS_ASSIGN(const params::TriggerSpec* trigger, trigger_of(action, context.scene));
-    TALUS_ASSIGN(const TriggerValues values, read_trigger_values(action, *trigger));
+    TALUS_ASSIGN(const params::TriggerSpec trigger, trigger_of(action, setup));
+    TALUS_ASSIGN(const TriggerValues values, read_trigger_values(action, trigger));
     Edit edit{setup, "", ""};
-    const std::vector<params::TriggerSpec>& all = context.scene.spec.triggers;
-    keep_own(edit.setup.releases, all, *trigger, &params::TriggerSpec::release);
-    keep_own(edit.setup.inflows, all, *trigger, &params::TriggerSpec::inflow);
+    const std::vector<params::TriggerSpec> all = triggers_of(setup);
+    keep_own(edit.setup.releases, all, trigger, &params::TriggerSpec::release);
+    keep_own(edit.setup.inflows, all, trigger, &params::TriggerSpec::inflow);
     if (edit.setup.releases.empty() && edit.setup.inflows.empty()) {
         return Error{
-            fmt::format("trigger \"{}\": its run has no debris; it must name a release or an inflow", trigger->name)};
+            fmt::format("trigger \"{}\": its run has no debris; it must name a release or an inflow", trigger.name)};
     }
-    if (!trigger->release.empty() && (values.volume || values.pore_pressure_ratio)) {
-        TALUS_ASSIGN(ReleaseSetup * release, own_entry(edit.setup.releases, trigger->release, "release"));
+    if (!trigger.release.empty() && (values.volume || values.pore_pressure_ratio)) {
+        TALUS_ASSIGN(ReleaseSetup * release, own_entry(edit.setup.releases, trigger.release, "release"));
         TALUS_TRY(set_release(values, *release, context));
     } else if (values.pore_pressure_ratio) {
         edit.setup.material.pore_pressure_ratio = *values.pore_pressure_ratio;
     }
     if (values.discharge) {
-        TALUS_ASSIGN(InflowSetup * inflow, own_entry(edit.setup.inflows, trigger->inflow, "inflow"));
-        TALUS_TRY(set_inflow(*values.discharge, trigger->hold_time, *inflow, edit.setup, context));
+        TALUS_ASSIGN(InflowSetup * inflow, own_entry(edit.setup.inflows, trigger.inflow, "inflow"));
+        TALUS_TRY(set_inflow(*values.discharge, trigger.hold_time, *inflow, edit.setup, context));
     }
     TALUS_ASSIGN(const auto reason, read_text(action, "reason", 200));
     edit.sentence =
-        fmt::format("started by trigger \"{}\"{}{}", trigger->name, told(values), reason ? ": " + *reason : "");
+        fmt::format("started by trigger \"{}\"{}{}", trigger.name, told(values), reason ? ": " + *reason : "");
     return edit;
 }
 
 Result<GaugeReading> read_gauge(const json& action, const Setup& setup, const Setup& begun_with,
                                 const ActionContext& context, double now, double last) {
     TALUS_TRY(check_keys(action, {"action", "trigger", "source", "received_at", "time_s", "discharge_m3ps"}));
-    TALUS_ASSIGN(const params::TriggerSpec* trigger, trigger_of(action, context.scene));
+    TALUS_ASSIGN(const params::TriggerSpec trigger, trigger_of(action, setup));
     TALUS_ASSIGN(const auto discharge,
-                 limited(action, "discharge_m3ps", "m3/s", false, trigger->discharge_limit, *trigger));
+                 limited(action, "discharge_m3ps", "m3/s", false, trigger.discharge_limit, trigger));
     if (!discharge) return Error{"discharge_m3ps: missing; it must be a number (m3/s)"};
     TALUS_ASSIGN(const auto time, read_number(action, "time_s", {.low = 0, .high = 1e7}, "s"));
     if (!time) return Error{"time_s: missing; it must be a number (s)"};
@@ -214,23 +214,23 @@ Result<GaugeReading> read_gauge(const json& action, const Setup& setup, const Se
     }
     const auto entry = std::find_if(setup.inflows.begin(), setup.inflows.end(), [&](const InflowSetup& inflow) {
         return inflow.scene_index >= 0 &&
-               context.scene.inflows[static_cast<std::size_t>(inflow.scene_index)].name == trigger->inflow;
+               context.scene.inflows[static_cast<std::size_t>(inflow.scene_index)].name == trigger.inflow;
     });
     const InflowSetup* begun = entry == setup.inflows.end() ? nullptr : find_id(begun_with.inflows, entry->id);
     if (begun == nullptr || !same_shape(begun->body, entry->body)) {
         return Error{
-            fmt::format("inflow \"{}\" is not that of this run any more; somebody has changed it", trigger->inflow)};
+            fmt::format("inflow \"{}\" is not that of this run any more; somebody has changed it", trigger.inflow)};
     }
     const double from = std::max(*time, now);
     terrain::Inflow inflow = *entry->body;
     const terrain::Inflow& rated = context.scene.inflows[static_cast<std::size_t>(entry->scene_index)];
-    inflow.hydrograph = with_reading(inflow.hydrograph, rated.hydrograph, from, *discharge, trigger->hold_time);
+    inflow.hydrograph = with_reading(inflow.hydrograph, rated.hydrograph, from, *discharge, trigger.hold_time);
     if (inflow.hydrograph.size() > most_rows) {
         return Error{fmt::format("the hydrograph has {} rows, the most there can be", most_rows)};
     }
     TALUS_TRY(check_amount(setup, &*entry, inflow, context));
     GaugeReading reading{entry->id, std::make_shared<const terrain::Inflow>(std::move(inflow)), ""};
-    reading.sentence = fmt::format("gauge of \"{}\": {:.6g} m3/s at {:.1f} s", trigger->name, *discharge, *time);
+    reading.sentence = fmt::format("gauge of \"{}\": {:.6g} m3/s at {:.1f} s", trigger.name, *discharge, *time);
     if (*time < now) reading.sentence += fmt::format(", late: from {:.1f} s on", now);
     return reading;
 }

@@ -21,6 +21,7 @@ import { testRestart } from "./twin/restart.mjs";
 import { testScenarios } from "./twin/scenarios.mjs";
 import { testSharing } from "./twin/sharing.mjs";
 import { testStart } from "./twin/start.mjs";
+import { testTables } from "./twin/tables.mjs";
 import { testTriggers } from "./twin/triggers.mjs";
 import { testVisible } from "./twin/visible.mjs";
 
@@ -49,7 +50,7 @@ setTimeout(() => {
 }, 1_100_000).unref();
 const run = new Run(browser, resolve(output), command, process.env.TALUS_ONLY);
 const parts = { controls: testControls, readings: testReadings, restart: testRestart, scenarios: testScenarios, barrier: testBarrier, parts: testParts, erosion: testErosion, ground: testGround, layers: testLayers, look: testLook, photo: testPhoto,
-  backanalysis: testBackanalysis, depth_averaged: testDepthAveraged, drawing: testDrawing, sharing: testSharing, start: testStart, triggers: testTriggers, visible: testVisible };
+  backanalysis: testBackanalysis, depth_averaged: testDepthAveraged, drawing: testDrawing, sharing: testSharing, start: testStart, tables: testTables, triggers: testTriggers, visible: testVisible };
 try {
   for (const part of (process.env.TALUS_PARTS ?? Object.keys(parts).join()).split(",")) {
     if (!parts[part]) throw new Error(`TALUS_PARTS names ${part}; there are ${Object.keys(parts).join(", ")}`);

@@ -14,6 +14,7 @@ import { followButton } from "./panels/follow_button";
 import { help, keys } from "./panels/keys";
 import { legends, scaleAndCompass } from "./panels/legends";
 import { measuring } from "./panels/measuring";
+import { ObservedTable } from "./panels/observed";
 import { controls } from "./panels/controls";
 import { OverlaysPanel } from "./panels/overlays";
 import { paneNames } from "./panels/pane_names";
@@ -24,6 +25,7 @@ import { balance, runCard } from "./panels/run_card";
 import { changedOnTheWay } from "./panels/scenarios";
 import { sessionButton } from "./panels/session";
 import { swipeDivider } from "./panels/swipe";
+import { tableList } from "./panels/tables";
 import { transport } from "./panels/transport";
 import { viewBar } from "./panels/view_bar";
 import type { Api } from "./protocol/api";
@@ -94,11 +96,12 @@ function buildPage(page: HTMLElement, twin: Twin): void {
 
   const probes = new Probes(twin);
   const overlays = new OverlaysPanel(twin, stage, new OverlayLayers(twin, stage));
-  const compare = new ComparePanel(twin, picture);
+  const observed = new ObservedTable(twin);
+  const compare = new ComparePanel(twin, picture, observed);
   const secondModel = new DepthAveragedPanel(twin);
   const section = sectionPanel(twin, stage);
   const readings = tabs("Readings", [
-    { name: "front", title: "Front", content: frontCharts(twin, secondModel.element) },
+    { name: "front", title: "Front", content: frontCharts(twin, observed.element, secondModel.element) },
     { name: "time", title: "Time", content: timeCharts(twin) },
     { name: "points", title: "Points", content: h("div", {}, pinsPanel(twin, stage), probes.element) },
     { name: "layers", title: "Layers", content: overlays.element },
@@ -107,15 +110,17 @@ function buildPage(page: HTMLElement, twin: Twin): void {
     { name: "balance", title: "Balance", content: balance(twin) },
     { name: "compare", title: "Compare", content: compare.element, onshow: () => compare.open() },
     { name: "calibrate", title: "Calibrate", content: calibratePanel(twin) },
-    { name: "alarms", title: "Alarms", content: alarmsPanel(twin) },
+    { name: "alarms", title: "Alarms", content: h("div", {}, alarmsPanel(twin), tableList(twin, stage, "alarm"), tableList(twin, stage, "trigger")) },
   ]);
   twin.probes.watch((list) => {
     if (list.length > 0) readings.show("points");
   });
   watchAll([twin.shown], () => readings.offer("compare", twin.shown.value.length > 1));
-  watchAll([twin.alerts], () => {
+  watchAll([twin.alerts, twin.you, ...twin.every("setup")], () => {
     const alerts = twin.alerts.value;
-    readings.offer("alarms", alerts !== null && alerts.triggers.length + alerts.alarms.length + alerts.notes.length > 0);
+    const raised = alerts !== null && alerts.triggers.length + alerts.alarms.length + alerts.notes.length > 0;
+    // Who may add one needs the tab before there is any.
+    readings.offer("alarms", raised || twin.you.value?.role === "controller" || twin.shown.value.some((name) => (twin.cells[name].setup.value?.alarms.length ?? 0) > 0));
   });
   let alarms = 0;
   twin.alerts.watch((alerts) => {
@@ -127,6 +132,7 @@ function buildPage(page: HTMLElement, twin: Twin): void {
     if (line) readings.show("section");
   });
   new Refresher(twin, () => {
+    if (readings.shown() === "front" || readings.shown() === "compare") void observed.refresh();
     if (readings.shown() === "front") void secondModel.refresh();
     if (readings.shown() === "points") void probes.refresh();
     if (readings.shown() === "section") section.refresh();

@@ -9,7 +9,7 @@ const parameters = [parameter("friction_coefficient", "friction coefficient"), p
   parameter("cohesion_kPa", "cohesion", "kPa")];
 const setup = (scenario: "A" | "B", friction: number, more: Partial<Setup> = {}): Setup => ({ scenario, name: "", changes: [], revision: 1,
   parameters: { "material.friction_coefficient": friction, "material.building_friction_coefficient": friction, "material.cohesion_kPa": 0 },
-  releases: [], barriers: [], buildings: [], zones: [], beds: [], inflows: [], gauges: [], notes: [], pending_restart: false, undo: null, redo: null, ...more });
+  releases: [], barriers: [], buildings: [], zones: [], beds: [], inflows: [], gauges: [], notes: [], observations: [], triggers: [], alarms: [], pending_restart: false, undo: null, redo: null, ...more });
 const barrier = (id: string, height_m: number, name = id): Setup["barriers"][number] => ({ id, name, height_m }) as Setup["barriers"][number];
 
 describe("differences of two scenarios", () => {

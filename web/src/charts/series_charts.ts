@@ -2,6 +2,7 @@
 import type { Column } from "../protocol/messages";
 import { watchAll } from "../state/cell";
 import { seriesUntil } from "../state/past";
+import { observedVelocities } from "../state/tables";
 import { probeColours, type Twin } from "../state/twin";
 import { h } from "../ui/dom";
 import { besideColour } from "../ui/theme";
@@ -11,7 +12,7 @@ import { Chart, joined, type Curve } from "./chart";
 const colours = ["#0b5fa5", "#d1640f"];
 const debrisColours = ["#2a9fc9", "#b08900"];
 const depthAveragedColours = ["#7b3fa0", "#2f7d4f"];
-const observed = [["front_velocity", "Field, front velocity", "#a3262a"], ["debris_speed", "Field, debris speed", "#1c2126"]] as const;
+const observed = [["front_velocity_mps", "Field, front velocity", "#a3262a"], ["debris_speed_mps", "Field, debris speed", "#1c2126"]] as const;
 
 /** Every n-th value of a long column, few enough to plot. */
 function thinned(column: Column, most = 600): number[] {
@@ -22,14 +23,13 @@ function thinned(column: Column, most = 600): number[] {
   return picked;
 }
 
-/** below: what stands under the charts. */
-export function frontCharts(twin: Twin, below: HTMLElement): HTMLElement {
+/** beside: what stands under the first chart; below: under all. */
+export function frontCharts(twin: Twin, beside: HTMLElement, below: HTMLElement): HTMLElement {
   const velocity = new Chart({ title: "Front velocity along the flow path", x: { label: "Chainage", unit: "m" }, y: { label: "Front velocity", unit: "m/s" }, curves: [],
     height: 230, empty: "The front has not moved yet. Run the simulation: velocities appear as it passes each chainage." });
   const arrival = new Chart({ title: "Arrival of the front", x: { label: "Chainage", unit: "m" }, y: { label: "Time", unit: "s" }, curves: [], height: 170,
     empty: "No arrivals yet." });
-  const { observations } = twin.scene;
-  watchAll([twin.shown, ...twin.every("series"), ...twin.every("depthAveraged"), twin.replay_s], () => {
+  watchAll([twin.shown, ...twin.every("series"), ...twin.every("setup"), ...twin.every("depthAveraged"), twin.replay_s], () => {
     const tables: { x: Column; y: Column }[] = [];
     const curves: Curve[] = [];
     const times: { x: Column; y: Column }[] = [];
@@ -53,19 +53,18 @@ export function frontCharts(twin: Twin, below: HTMLElement): HTMLElement {
       times.push({ x: front.chainage_m, y: front.arrival_time_s });
       timeCurves.push({ label: `Arrival${suffix}`, unit: "s", colour: colours[i] });
     }
-    for (const [quantity, label, colour] of observed) {
-      const own = observations.filter((o) => o.quantity === quantity);
+    const field = twin.cells[twin.shown.value[0]].setup.value;
+    for (const [key, label, colour] of observed) {
+      const own = observedVelocities(field, key);
       if (own.length === 0) continue;
-      tables.push({ x: own.map((o) => o.chainage_m), y: own.map((o) => o.observed_mps) });
+      tables.push({ x: own.map((o) => o.chainage_m), y: own.map((o) => o.mps) });
       curves.push({ label, unit: "m/s", colour, marksOnly: true });
     }
     velocity.update(tables.length > 0 ? joined(tables) : [[]], curves);
     arrival.update(times.length > 0 ? joined(times) : [[]], timeCurves);
   });
-  const list = h("ul", { class: "observations" }, ...observations.map((o) =>
-    h("li", {}, `${o.name}: ${o.quantity === "debris_speed" ? "debris" : "front"} ${o.observed_mps} m/s at ${o.chainage_m} m (${o.source})`)));
   const note = twin.scene.flow_path ? null : h("p", { class: "hint" }, "This scene has no flow path: there is no chainage to plot against.");
-  return h("div", {}, note, velocity.element, observations.length > 0 ? h("div", { class: "hint" }, "Observations", list) : null, arrival.element, below);
+  return h("div", {}, note, velocity.element, beside, arrival.element, below);
 }
 
 interface Plotted { column: string; label: string; colour: string }

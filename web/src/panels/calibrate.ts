@@ -104,7 +104,7 @@ export function calibratePanel(twin: Twin): HTMLElement {
     void twin.act({ action: "set_parameters", values: Object.fromEntries(status.parameters.map((p, i) => [p.key, Number(best.values[i].toPrecision(4))])) });
   } });
   const why = h("p", { class: "hint calibrate-why" });
-  const about = h("p", { class: "hint" }, "Finds the values that explain the field observations. Runs use the scene as it was opened, without later changes in the page; the live run continues beside them.");
+  const about = h("p", { class: "hint" }, "Finds the values that explain the field observations. Runs use the scene as it was opened, with the observations of scenario A and without other changes in the page; the live run continues beside them.");
   const table = h("details", {}, h("summary", {}, "All runs"));
   const element = h("div", { class: "calibrate" }, about, why, going, map.element, found, table, observed, form);
 

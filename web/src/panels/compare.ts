@@ -11,6 +11,7 @@ import { button, h } from "../ui/dom";
 import { comparisonReport } from "./comparison_report";
 import { shownValue, standing, timeSoFar } from "./comparison_text";
 import { save } from "../ui/save";
+import type { ObservedTable } from "./observed";
 import type { Picture } from "./picture";
 
 const peak = (column: readonly (number | null)[]): number | null => column.reduce<number | null>((most, v) => (v === null ? most : Math.max(most ?? v, v)), null);
@@ -30,7 +31,7 @@ export class ComparePanel {
   private rows: Row[] = [];
   private busy = false;
 
-  constructor(private readonly twin: Twin, picture: Picture) {
+  constructor(private readonly twin: Twin, picture: Picture, private readonly observed: ObservedTable) {
     const report = button("Save the comparison", { icon: "download", class: "small", title: "One page with both views, the table and the charts (HTML)",
       onclick: () => void twin.attempt(async () => {
         await this.refresh();
@@ -67,7 +68,7 @@ export class ComparePanel {
   }
   private side(name: ScenarioName): Side {
     const { setup, impacts, gauges } = this.twin.cells[name];
-    return { setup: setup.value, impacts: impacts.value, gauges: gauges.value ?? [], figures: this.figures.get(name) ?? [], points: this.twin.probes.value.map((p, i) => peaksOf(p, i, name)) };
+    return { setup: setup.value, impacts: impacts.value, gauges: gauges.value ?? [], observed: this.observed.of(name), figures: this.figures.get(name) ?? [], points: this.twin.probes.value.map((p, i) => peaksOf(p, i, name)) };
   }
   private draw(): void {
     const { twin } = this;

@@ -15,7 +15,7 @@ import type { ViewBar } from "./view_bar";
 const shortcuts: [string, [string, string][]][] = [
   ["Time", [["Space", "Run or pause (when no control has the focus)"], [".", "One step"], ["R", "Play or pause the recording"], ["L", "Return to live"]]],
   ["View (focus it with V)", [["Arrow keys", "Turn and tilt"], ["Shift + arrow keys", "Move"], ["+ and −", "Zoom"], ["1, 2, 3", "Orbit, fly, follow the front"],
-    ["W A S D, Q E", "Fly"], ["T", "Top view"], ["F", "Whole scene"], ["N", "Natural look, or colours of a legend"], ["M", "Measure on the ground"], ["P", "Pin a note"], ["G", "Add a gauge"], ["Alt + 1 … 9", "Saved view"]]],
+    ["W A S D, Q E", "Fly"], ["T", "Top view"], ["F", "Whole scene"], ["N", "Natural look, or colours of a legend"], ["M", "Measure on the ground"], ["P", "Pin a note"], ["G", "Add a gauge"], ["O", "Add an observation"], ["Alt + 1 … 9", "Saved view"]]],
   ["Drawing", [["Space", "Point in the middle of the view"], ["Enter", "Finish"], ["Backspace", "Remove the last point"], ["Escape", "Cancel, or clear the selection"],
     ["X", "Barrier: across the flow path, nearest to the pointer"], ["Delete", "Remove the selection"], ["Arrow keys on a corner", "Move it by 1 m"]]],
   ["Everywhere", [["Ctrl + Z", "Undo; in a field with text that is not sent yet, undo typing"], ["Ctrl + Shift + Z", "Redo"], ["?", "This help"]]],
@@ -68,6 +68,7 @@ export function keys(twin: Twin, stage: Stage, drawing: Drawing, bar: ViewBar, t
       case "m": toggleMeasuring(twin); break;
       case "p": togglePinning(twin, "note"); break;
       case "g": togglePinning(twin, "gauge"); break;
+      case "o": togglePinning(twin, "observation"); break;
       case "x": drawing.snap(); break;
       case "Enter":
         if (drawing.shape === null) return;

@@ -1,16 +1,20 @@
-// Gauges and notes, which people put at places of the ground: their lists, and the dialog that names one.
+// Gauges, observations and notes, which people put at places of the ground: their lists, and the dialog that names one.
 import type { Point, Setup } from "../protocol/messages";
 import type { Stage } from "../scene/stage";
 import { watchAll } from "../state/cell";
 import type { Pinned, Twin } from "../state/twin";
 import { dialog, openDialog } from "../ui/dialog";
 import { button, h, type IconName } from "../ui/dom";
+import { entryForm, tableList } from "./tables";
 
 interface Pin { id: string; name: string; x_m: number; y_m: number; in_force?: boolean }
 interface Kind { title: string; add: string; key: string; icon: IconName; does: string; hint: string; field: string; longest: number; of(setup: Setup): readonly Pin[] }
 
+/** What has a name and a place alone. */
+type Named = Exclude<Pinned, "observation">;
+
 /** longest: characters; the server accepts 80 and 200 bytes. */
-const kinds: Record<Pinned, Kind> = {
+const kinds: Record<Named, Kind> = {
   gauge: { title: "Gauges", add: "Add a gauge", key: "G", icon: "probe", does: "Record depth and speed at a place of the ground", field: "Name of the gauge", longest: 60, of: (setup) => setup.gauges,
     hint: "Gauges record depth and speed from the start of a run: one that is added later applies from the next restart. Their readings are in the tabs Impact and Time." },
   note: { title: "Notes", add: "Pin a note", key: "P", icon: "note", does: "Write a note at a place of the ground", field: "Text of the note", longest: 120, of: (setup) => setup.notes,
@@ -28,12 +32,13 @@ export function pinsPanel(twin: Twin, stage: Stage): HTMLElement {
   twin.pinned.watch((pinned) => {
     if (pinned === null) return;
     twin.pinned.value = null;
-    name(twin, pinned.what, pinned.at, null);
+    if (pinned.what === "observation") entryForm(twin, "observation", null, pinned.at);
+    else name(twin, pinned.what, pinned.at, null);
   });
-  return h("div", {}, listOf(twin, stage, "gauge"), listOf(twin, stage, "note"));
+  return h("div", {}, listOf(twin, stage, "gauge"), tableList(twin, stage, "observation", () => togglePinning(twin, "observation")), listOf(twin, stage, "note"));
 }
 
-function listOf(twin: Twin, stage: Stage, what: Pinned): HTMLElement {
+function listOf(twin: Twin, stage: Stage, what: Named): HTMLElement {
   const kind = kinds[what];
   const add = button(kind.add, { icon: kind.icon, class: "small", onclick: () => togglePinning(twin, what) });
   const list = h("ul", { class: `items pins ${what}s` });
@@ -53,7 +58,7 @@ function listOf(twin: Twin, stage: Stage, what: Pinned): HTMLElement {
   return h("section", {}, h("div", { class: "group-head" }, h("h3", {}, kind.title), add), hint, list);
 }
 
-function row(twin: Twin, stage: Stage, what: Pinned, pin: Pin, fixed: boolean): HTMLElement {
+function row(twin: Twin, stage: Stage, what: Named, pin: Pin, fixed: boolean): HTMLElement {
   const go = (): void => stage.rig.visit(stage.reliefOf(twin.edited.value).local(pin.x_m, pin.y_m, 0.5), 70);
   return h("li", { class: "row" },
     h("button", { type: "button", class: "item grow", title: "Show its place", onclick: go }, h("b", {}, pin.name),
@@ -64,7 +69,7 @@ function row(twin: Twin, stage: Stage, what: Pinned, pin: Pin, fixed: boolean): 
 }
 
 /** existing: what gets another name; null: a new one. */
-function name(twin: Twin, what: Pinned, at: Point, existing: Pin | null): void {
+function name(twin: Twin, what: Named, at: Point, existing: Pin | null): void {
   const kind = kinds[what];
   const text = h("input", { type: "text", class: "grow", "aria-label": kind.field, maxlength: kind.longest, value: existing?.name ?? "", autofocus: true });
   const send = async (event: Event): Promise<void> => {

@@ -1,7 +1,7 @@
 // The HTTP half of docs/protocol.md.
 import { decodeFrame, type Frame, type ScenarioName } from "./frame";
 import { decodeGrid, type Grid } from "./grid";
-import type { Action, DepthAveragedComparison, Done, Ensemble, ExportFile, Figure, FlowExport, FlowFormat, FlowOffer, GaugeReadings, Impacts, LayerName, NewScenario, OverlayData, ProbeSeries, Recording, SceneInfo, Series, Session, Share, Tiles, WantedOverlay, WantedShare } from "./messages";
+import type { Action, DepthAveragedComparison, Done, Ensemble, ExportFile, Figure, FlowExport, FlowFormat, FlowOffer, GaugeReadings, Impacts, LayerName, NewScenario, Observed, OverlayData, ProbeSeries, Recording, SceneInfo, Series, Session, Share, Tiles, WantedOverlay, WantedShare } from "./messages";
 import type { Checked, Draft, DraftRole, JobEstimate, JobForm, MendingOfTerrain, StartPage, ValidationCase, WantedJob, WantedScene } from "./start";
 
 /** The server's answer to a request that it refused. */
@@ -83,6 +83,7 @@ export class Api {
   impacts = (s: ScenarioName, time_s: number | null = null): Promise<Impacts> => this.json(`scenarios/${s}/impacts${at(time_s)}`);
   gauges = async (s: ScenarioName, time_s: number | null = null): Promise<GaugeReadings> =>
     this.json<GaugeReadings>(`scenarios/${s}/gauges${at(time_s)}`);
+  observed = (s: ScenarioName): Promise<Observed> => this.json(`scenarios/${s}/observed`);
   figures = async (s: ScenarioName): Promise<Figure[]> => (await this.json<{ figures: Figure[] }>(`scenarios/${s}/figures`)).figures;
   recording = (s: ScenarioName): Promise<Recording> => this.json(`scenarios/${s}/recording`);
   layer = async (s: ScenarioName, name: LayerName, time_s: number | null = null): Promise<Grid> =>

@@ -141,18 +141,46 @@ export interface Parameter {
   used_by_depth_averaged: boolean;
 }
 
-/** What was observed in the field. */
-export interface Observation {
+/** What people add to the tables of the scene. */
+export type TableKind = "observation" | "trigger" | "alarm";
+
+/** Of a key; null: none. */
+export type TableValue = number | string | boolean | null;
+
+/** A key of a section of the scene file. */
+export interface TableKey {
+  /** With its unit. */
+  key: string;
   /** For people. */
-  name: string;
-  /** Along the flow path. */
-  chainage_m: number;
-  /** What was observed. */
-  quantity: "front_velocity" | "debris_speed";
-  /** Its value. */
-  observed_mps: number;
-  /** Where it was published. */
-  source: string;
+  label: string;
+  /** Empty: none. */
+  unit: string;
+  /** Of its value. */
+  is: "number" | "text" | "boolean";
+  /** There must be a value. */
+  required: boolean;
+  /** Of a new entry. */
+  default: TableValue;
+  /** What no value means. */
+  absent: string;
+  /** The range of a number. */
+  allowed: string;
+  /** One sentence. */
+  help: string;
+}
+
+/** A section of the scene file to which entries are added. */
+export interface TableSection {
+  /** Its name there. */
+  section: string;
+  /** What an entry is. */
+  kind: TableKind;
+  /** For people. */
+  help: string;
+  /** In the order of the scene file. */
+  keys: TableKey[];
+  /** Keys of which exactly one must have a value. */
+  one_of: string[][];
 }
 
 /** The line along which the front is measured. */
@@ -265,8 +293,8 @@ export interface SceneInfo {
   gravity_mps2: number;
   /** Along which the front is measured; null: there is none. */
   flow_path: FlowPath | null;
-  /** What the scene file has of the field. */
-  observations: Observation[];
+  /** Kinds of observations, then triggers and alarms. */
+  table_sections: TableSection[];
   /** As the scene file has them. */
   gauges: GaugePlace[];
   /** As the scene file has them. */
@@ -543,6 +571,20 @@ export interface Note {
   y_m: number;
 }
 
+/** An observation, a trigger or an alarm; no step of the run knows it. */
+export interface TableEntry {
+  /** Of this object, as actions name it. */
+  id: string;
+  /** Of the scene file. */
+  section: string;
+  /** For people. */
+  name: string;
+  /** By key of the section. */
+  values: Record<string, TableValue>;
+  /** It is of the scene file; false: somebody made it here. */
+  from_scene: boolean;
+}
+
 /** A change of a run after its first step. */
 export interface ChangeOnTheWay {
   /** Simulated. */
@@ -581,6 +623,12 @@ export interface Setup {
   gauges: Gauge[];
   /** What people have written at places; the run does not know of them. */
   notes: Note[];
+  /** Of the field. */
+  observations: TableEntry[];
+  /** Those of scenario A can start runs. */
+  triggers: TableEntry[];
+  /** For which this run is watched. */
+  alarms: TableEntry[];
   /** Beds, inflows or gauges differ from those that the run began with. */
   pending_restart: boolean;
   /** What undo would do. */
@@ -685,6 +733,33 @@ export interface SectionReading {
   peak_discharge_m3ps: number;
   /** So far, less what came back. */
   passed_m3: number;
+}
+
+/** A field observation beside the run. */
+export interface ObservedRow {
+  /** Of the observation in the setup; null: one that names a file. */
+  id: string | null;
+  /** For people. */
+  name: string;
+  /** Empty: none. */
+  unit: string;
+  /** Its value; of damage: the limit. */
+  observed: number;
+  /** Standard deviation. */
+  uncertainty: number;
+  /** What the computed value should be to the observed one. */
+  is: "equal" | "at_least" | "below";
+  /** Null: debris has not come there. */
+  computed: number | null;
+  /** In standard deviations; 0: on the right side of a limit. */
+  deviation: number | null;
+}
+
+export interface Observed {
+  /** Of the run. */
+  time_s: number;
+  /** In the order of the scene file's sections. */
+  rows: ObservedRow[];
 }
 
 export interface GaugeReadings {
@@ -1466,6 +1541,9 @@ export type Action =
   | { action: "remove_bed" | "remove_inflow" | "remove_gauge"; id: string }
   | { action: "put_note"; id?: string; name?: string; x_m?: number; y_m?: number }
   | { action: "remove_note"; id: string }
+  | { action: "put_observation"; id?: string; section?: string; values?: Record<string, TableValue> }
+  | { action: "put_trigger" | "put_alarm"; id?: string; values?: Record<string, TableValue> }
+  | { action: "remove_observation" | "remove_trigger" | "remove_alarm"; id: string }
   | { action: "undo" | "redo" };
 
 /** What the server sends over the WebSocket, besides frames. */

@@ -23,6 +23,7 @@ import type { Relief } from "./relief";
 import { Sky } from "./sky";
 import { barrierSolid, disposeSolid, houseSolid, plainHouse } from "./solids";
 import { quantity, tick } from "../state/format";
+import { observationText, placeOf } from "../state/tables";
 
 export const releaseColour = "#a3262a";
 /** What fits over the view; the list of notes has the whole. */
@@ -234,12 +235,12 @@ export class ScenarioView {
       for (const { chainage, at } of this.chainageMarks()) {
         labels.push({ at: relief.local(at[0], at[1], 1), text: chainage === 0 ? "0 m" : chainage < 20 ? tick(chainage) : `${chainage}`, kind: "chainage", priority: 2, farthest: 1.6 * size });
       }
-      for (const observation of scene.observations) {
-        const place = placeOnPath(scene, observation.chainage_m);
-        if (place) {
-          labels.push({ at: relief.local(place.at[0], place.at[1], 4), text: `${observation.name}, ${observation.quantity === "debris_speed" ? "debris" : "front"} ${quantity(observation.observed_mps, "m/s")}`,
-            kind: "observation", priority: 6 });
-        }
+      for (const observation of this.setup?.observations ?? []) {
+        const at = placeOf(observation, (chainage) => {
+          const place = placeOnPath(scene, chainage);
+          return place ? [place.at[0], place.at[1]] : null;
+        });
+        if (at) labels.push({ at: relief.local(at[0], at[1], 4), text: observationText(observation), kind: "observation", priority: 6 });
       }
       // Below their places, where observed front velocities and chainages of the same places do not hide them.
       for (const gauge of this.setup?.gauges ?? []) {

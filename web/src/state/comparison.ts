@@ -1,10 +1,10 @@
 // What two scenarios have come to, side by side: figures, houses, barriers, gauges, points.
-import type { Figure, GaugeReading, Impact, BarrierImpact, Impacts, Parameter, Setup } from "../protocol/messages";
+import type { Figure, GaugeReading, Impact, BarrierImpact, Impacts, ObservedRow, Parameter, Setup } from "../protocol/messages";
 import { changedKeys } from "./differences";
 import { decimals, fixed } from "./format";
 
 export interface Row { group: string; name: string; unit: string; a: number | string | null; b: number | string | null }
-export interface Side { setup: Setup | null; figures: readonly Figure[]; impacts: Impacts | null; gauges: readonly GaugeReading[]; points: readonly PointPeaks[] }
+export interface Side { setup: Setup | null; figures: readonly Figure[]; impacts: Impacts | null; gauges: readonly GaugeReading[]; observed?: readonly ObservedRow[]; points: readonly PointPeaks[] }
 /** Peaks at a probe. */
 export interface PointPeaks { name: string; depth_m: number | null; speed_mps: number | null; pressure_kPa: number | null }
 
@@ -37,6 +37,13 @@ function paired<T extends { name: string }>(group: string, key: (of: T) => strin
   });
 }
 
+/** What both runs have for what was observed in the field. */
+function observedRows(a: readonly ObservedRow[], b: readonly ObservedRow[]): Row[] {
+  const all = [...a, ...b.filter((other) => !a.some(({ name }) => name === other.name))];
+  return all.map((row): Row => ({ group: "Field observations", name: `${row.name}, observed ${row.is === "at_least" ? "at least " : row.is === "below" ? "below " : ""}${fixed(row.observed, decimals(row.observed))}`, unit: row.unit,
+    a: a.find(({ name }) => name === row.name)?.computed ?? null, b: b.find(({ name }) => name === row.name)?.computed ?? null })).filter((row) => row.a !== null || row.b !== null);
+}
+
 /** until_s: time of the recording that houses, barriers and gauges are of; null: they are of the runs so far, as figures and points always are. */
 export function comparisonRows(a: Side, b: Side, parameters: readonly Parameter[], until_s: number | null = null): Row[] {
   const until = until_s === null ? "" : `, until ${fixed(until_s, 1)} s`;
@@ -57,6 +64,7 @@ export function comparisonRows(a: Side, b: Side, parameters: readonly Parameter[
   return [...given, ...figures, ...paired(`Houses${until}`, (i: Impact) => i.id, houses(a), houses(b), atHouses),
     ...paired(`Barriers${until}`, (i: BarrierImpact) => i.id, a.impacts?.barriers ?? [], b.impacts?.barriers ?? [], atBarriers),
     ...paired(`Gauges${until}`, (g: GaugeReading) => g.name, gauges(a), gauges(b), atGauges),
+    ...observedRows(a.observed ?? [], b.observed ?? []),
     ...paired("Points", (p: PointPeaks) => p.name, a.points, b.points, atPoints)];
 }
 

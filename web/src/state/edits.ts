@@ -8,11 +8,11 @@ import type { Shape, Twin } from "./twin";
 
 /**
  * Whether an action on a run that has begun may begin a scenario of its own: it changes results. Starting a release is part of running, a
- * name or a note changes nothing, and undo and redo are of the scenario in which something was done.
+ * name, a note, an observation, a trigger or an alarm changes nothing, and undo and redo are of the scenario in which something was done.
  */
 export function beginsScenario(action: Action): boolean {
   if ("id" in action && "name" in action && Object.keys(action).length === 3) return false;
-  return /^(put|remove|set)_/.test(action.action) && !["set_speed", "put_note", "remove_note"].includes(action.action);
+  return /^(put|remove|set)_/.test(action.action) && action.action !== "set_speed" && !/_(note|observation|trigger|alarm)$/.test(action.action);
 }
 
 const rounded = (points: readonly Point[]): Point[] => points.map(([x, y]) => [Number(x.toFixed(2)), Number(y.toFixed(2))]);

@@ -32,7 +32,7 @@ export interface ScenarioCells {
 export type Shape = "release" | "barrier" | "building" | "zone" | "bed" | "inflow";
 export type Tool = { kind: "none" } | { kind: "draw"; shape: Shape } | { kind: "probe" } | { kind: "section" } | { kind: "measure" } | { kind: "pin"; what: Pinned };
 /** What is put at one place of the ground. */
-export type Pinned = "gauge" | "note";
+export type Pinned = "gauge" | "note" | "observation";
 export interface Selection { shape: Shape; id: string }
 export interface Probe { at: Point; colour: string; series: Partial<Record<ScenarioName, ProbeSeries>> }
 export type SurfaceColour = "off" | "depth" | "speed";

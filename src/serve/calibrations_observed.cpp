@@ -1,0 +1,83 @@
+// What calibrations fit: the observations of the first scenario.
+#include <algorithm>
+#include <filesystem>
+#include <utility>
+
+#include "core/try.hpp"
+#include "params/scene_text.hpp"
+#include "products/text_file.hpp"
+#include "serve/calibrations.hpp"
+#include "twin/table_entry.hpp"
+
+namespace talus::serve {
+namespace {
+
+using nlohmann::json;
+
+bool same_entries(const std::vector<twin::TableEntry>& a, const std::vector<twin::TableEntry>& b) {
+    return std::equal(a.begin(), a.end(), b.begin(), b.end(), twin::same_values);
+}
+
+}  // namespace
+
+json Calibrations::observations_json(const std::vector<ensemble::ObservedValue>& observed) {
+    json list = json::array();
+    for (const ensemble::ObservedValue& o : observed) {
+        list.push_back({{"name", o.name},
+                        {"unit", o.unit},
+                        {"observed", o.value},
+                        {"uncertainty", o.uncertainty},
+                        {"is", o.kind == ensemble::ObservedValue::Kind::equal      ? "equal"
+                               : o.kind == ensemble::ObservedValue::Kind::at_least ? "at_least"
+                                                                                   : "below"},
+                        {"best", nullptr},
+                        {"deviation", nullptr}});
+    }
+    return list;
+}
+
+json Calibrations::why_none(const std::vector<ensemble::ObservedValue>& observed, const run::SceneSource& source) {
+    if (source.file.empty()) return "This program serves the scene without calibrations.";
+    if (!observed.empty()) return nullptr;
+    return "Scenario A has no field observations to calibrate against. Add them on the tab Points, or in the scene "
+           "file.";
+}
+
+void Calibrations::follow(const json& observations) {
+    const std::lock_guard lock(mutex_);
+    followed_ = observations;
+    if (!busy_ && !closed_) take_observations();
+}
+
+void Calibrations::take_observations() {
+    if (followed_ == taken_ || followed_.is_null()) return;
+    taken_ = followed_;
+    std::vector<twin::TableEntry> entries;
+    for (const json& each : taken_) {
+        if (auto entry = twin::read_table_entry(each, twin::TableKind::observation))
+            entries.push_back(std::move(*entry));
+    }
+    scene_ = opened_;
+    if (!same_entries(entries, entries_of(opened_->spec, twin::TableKind::observation))) {
+        auto scene = std::make_shared<scene::Scene>(*opened_);
+        put_entries(scene->spec, twin::TableKind::observation, entries);
+        scene_ = std::move(scene);
+    }
+    observed_ = ensemble::observed_values(*scene_);
+    status_["why_not"] = why_none(observed_, settings_.source);
+    // What a former calibration found is beside the observations that it had.
+    if (status_["state"] == "idle") status_["observations"] = observations_json(observed_);
+    tell_now();
+}
+
+Result<run::SceneSource> Calibrations::source_of_runs() const {
+    if (scene_ == opened_) return settings_.source;
+    const auto now = entries_of(scene_->spec, twin::TableKind::observation);
+    TALUS_ASSIGN(params::SceneSpec spec, scene::parse_scene(settings_.source.file, settings_.source.overrides));
+    put_entries(spec, twin::TableKind::observation, now);
+    const std::filesystem::path file = settings_.folder / "scene_observed.toml";
+    TALUS_TRY(products::write_text_file(file, params::write_short_scene(spec)));
+    return run::SceneSource{file, {}};
+}
+
+}  // namespace talus::serve
