@@ -5,7 +5,7 @@
 
 #include <fmt/format.h>
 
-#include "serve/json_text.hpp"
+#include "session/json_text.hpp"
 
 namespace talus::serve {
 

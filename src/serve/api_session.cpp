@@ -8,8 +8,8 @@
 #include "core/try.hpp"
 #include "geo/orthophoto.hpp"
 #include "serve/api.hpp"
-#include "serve/json_text.hpp"
-#include "serve/thinned.hpp"
+#include "session/json_text.hpp"
+#include "session/thinned.hpp"
 #include "twin/json_keys.hpp"
 
 namespace talus::serve {
@@ -33,12 +33,12 @@ void add_terrain(Router& router, Session& session) {
                         return;
                     }
                     const Grid<float>& whole = session.scene()->terrain.elevation();
-                    const int factor = thinning(whole.geometry, wanted->value_or(usual_cells));
+                    const int factor = session::thinning(whole.geometry, wanted->value_or(usual_cells));
                     session.worker().post([respond, encoded, factor, scene = session.scene()] {
                         Bytes& bytes = (*encoded)[factor];
                         if (!bytes) {
                             bytes = std::make_shared<const std::string>(
-                                twin::encode_grid(thinned_by(scene->terrain.elevation(), factor)));
+                                twin::encode_grid(session::thinned_by(scene->terrain.elevation(), factor)));
                         }
                         Response response;
                         response.type = "application/octet-stream";

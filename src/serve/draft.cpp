@@ -16,8 +16,8 @@
 #include "geo/zip_archive.hpp"
 #include "scene/bundle.hpp"
 #include "scene/check.hpp"
-#include "serve/json_text.hpp"
 #include "serve/library.hpp"
+#include "session/json_text.hpp"
 
 namespace talus::serve {
 namespace {

@@ -11,7 +11,7 @@
 #include "core/try.hpp"
 #include "geo/longitude_latitude.hpp"
 #include "serve/api.hpp"
-#include "serve/json_text.hpp"
+#include "session/json_text.hpp"
 
 namespace talus::serve {
 namespace {

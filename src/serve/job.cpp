@@ -11,7 +11,7 @@
 #include <fmt/ranges.h>
 
 #include "core/try.hpp"
-#include "serve/json_text.hpp"
+#include "session/json_text.hpp"
 #include "twin/json_keys.hpp"
 #include "validate/suite.hpp"
 
@@ -239,25 +239,25 @@ const char* report_of(JobKind kind) {
 }
 
 std::string job_text(const Job& job) {
-    return to_text({{"talus_job", 1},
-                    {"id", job.id},
-                    {"kind", job_kind_name(job.kind)},
-                    {"state", job_state_name(job.state)},
-                    {"title", job.title},
-                    {"scene", job.scene},
-                    {"arguments", job.arguments},
-                    {"message", job.message},
-                    {"begun_at", job.begun_at},
-                    {"ended_at", job.ended_at},
-                    {"process", job.process},
-                    {"done", job.done},
-                    {"failed", job.failed},
-                    {"count", job.count}}) +
+    return session::to_text({{"talus_job", 1},
+                             {"id", job.id},
+                             {"kind", job_kind_name(job.kind)},
+                             {"state", job_state_name(job.state)},
+                             {"title", job.title},
+                             {"scene", job.scene},
+                             {"arguments", job.arguments},
+                             {"message", job.message},
+                             {"begun_at", job.begun_at},
+                             {"ended_at", job.ended_at},
+                             {"process", job.process},
+                             {"done", job.done},
+                             {"failed", job.failed},
+                             {"count", job.count}}) +
            "\n";
 }
 
 Result<Job> read_job(const std::string& text) {
-    TALUS_ASSIGN(const json file, parse_json(text));
+    TALUS_ASSIGN(const json file, session::parse_json(text));
     if (!file.is_object() || file.value("talus_job", json()) != 1) return Error{"this is no job of a start page"};
     try {
         Job job;

@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "core/try.hpp"
-#include "serve/json_text.hpp"
+#include "session/json_text.hpp"
 #include "twin/json_keys.hpp"
 
 namespace talus::serve {

@@ -14,10 +14,13 @@
 
 #include "serve/access.hpp"
 #include "serve/loop.hpp"
-#include "serve/people.hpp"
 #include "serve/worker.hpp"
+#include "session/people.hpp"
 
 namespace talus::serve {
+
+using session::People;
+using session::Person;
 
 /// A connected viewer: a WebSocket. Sending to it must not block.
 class Viewer {

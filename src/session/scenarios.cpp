@@ -1,11 +1,11 @@
-#include "serve/scenarios.hpp"
+#include "session/scenarios.hpp"
 
 #include <algorithm>
 #include <iterator>
 #include <optional>
 #include <utility>
 
-namespace talus::serve {
+namespace talus::session {
 namespace {
 
 using nlohmann::json;
@@ -214,4 +214,4 @@ std::optional<Clock::time_point> Scenarios::work(Clock::time_point now) {
     return next;
 }
 
-}  // namespace talus::serve
+}  // namespace talus::session

@@ -13,11 +13,10 @@
 #include <nlohmann/json.hpp>
 
 #include "core/result.hpp"
-#include "serve/message.hpp"
-#include "serve/pace.hpp"
+#include "session/pace.hpp"
 #include "twin/scenario.hpp"
 
-namespace talus::serve {
+namespace talus::session {
 
 /// Requests of the viewers of a scenario.
 struct Audience {
@@ -190,4 +189,4 @@ class Scenarios {
     Pace pace_;
 };
 
-}  // namespace talus::serve
+}  // namespace talus::session
