@@ -64,7 +64,7 @@ void Loop::work_until_done() {
         lock.unlock();
         for (Task& task : now_due) task(scenarios_);
         now_due.clear();
-        const auto next = scenarios_.work(Clock::now());
+        const auto next = scenarios_.work(&Clock::now);
         lock.lock();
         const auto called = [this] { return done_ || !tasks_.empty(); };
         if (!next) {

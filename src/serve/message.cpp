@@ -1,5 +1,7 @@
 #include "serve/message.hpp"
 
+#include <array>
+
 namespace talus::serve {
 
 Response json_response(int status, const nlohmann::json& content) {
@@ -11,6 +13,15 @@ Response json_response(int status, const nlohmann::json& content) {
 
 Response error_response(int status, const std::string& sentence) {
     return json_response(status, {{"error", sentence}});
+}
+
+Response to_response(const session::Reply& reply) {
+    constexpr std::array statuses{200, 400, 404, 409};  // as Outcome has them
+    Response response;
+    response.status = statuses[static_cast<std::size_t>(reply.outcome)];
+    if (reply.binary) response.type = "application/octet-stream";
+    response.body = reply.body;
+    return response;
 }
 
 }  // namespace talus::serve

@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "session/json_text.hpp"
+#include "session/requests.hpp"
 #include "session/role.hpp"
 
 namespace talus::serve {
@@ -60,5 +61,6 @@ class Intake {
 [[nodiscard]] Response json_response(int status, const nlohmann::json& content);
 /// `{"error": sentence}`
 [[nodiscard]] Response error_response(int status, const std::string& sentence);
+[[nodiscard]] Response to_response(const session::Reply& reply);
 
 }  // namespace talus::serve

@@ -62,6 +62,9 @@ struct Copied {
 using Work = std::function<void(const std::atomic<bool>& stop)>;
 using Elsewhere = std::function<void(Work work, std::function<void()> then)>;
 
+/// A clock, for what measures how long something took.
+using Now = std::function<Clock::time_point()>;
+
 template <class Value>
 using Answer = std::function<void(Result<Value>)>;
 
@@ -116,7 +119,7 @@ class Scenarios {
 
     /// Takes a step if one is due, and notifies the watcher. Returns when to call it again; empty: not before another
     /// call.
-    std::optional<Clock::time_point> work(Clock::time_point now);
+    std::optional<Clock::time_point> work(const Now& clock);
 
     static constexpr const char* name_of(int index) {
         constexpr std::array<const char*, max_count> letters{"A", "B", "C", "D", "E", "F"};
