@@ -7,7 +7,6 @@
 #include <memory>
 #include <mutex>
 #include <string>
-#include <thread>
 
 #include <nlohmann/json.hpp>
 
@@ -16,6 +15,7 @@
 #include "run/variants.hpp"
 #include "scene/scene.hpp"
 #include "serve/message.hpp"
+#include "serve/worker.hpp"
 
 namespace talus::serve {
 
@@ -78,7 +78,7 @@ class Calibrations {
     nlohmann::json status_;     // as describe() gives it
     bool busy_ = false, closed_ = false;
     Clock::time_point told_{};
-    std::thread thread_;
+    std::unique_ptr<Worker> worker_;
 };
 
 }  // namespace talus::serve
