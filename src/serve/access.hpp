@@ -7,19 +7,17 @@
 
 #include "core/result.hpp"
 #include "serve/message.hpp"
+#include "session/secret.hpp"
 
 namespace talus::serve {
+
+using session::random_token;
+using session::same_secret;
 
 struct Tokens {
     std::string controller, viewer;
     std::string trigger{};  ///< empty: there is none
 };
-
-/// 128 bits from the operating system, as 32 hexadecimal digits. Error: it gave none.
-[[nodiscard]] Result<std::string> random_token();
-
-/// Compares every byte, so that the time does not reveal where the first difference is. An empty secret is no one's.
-[[nodiscard]] bool same_secret(std::string_view given, std::string_view secret);
 
 /// Error if a chosen token is too short, has other characters than A-Z a-z 0-9 _ - . ~, or two are the same.
 [[nodiscard]] Status check_tokens(const Tokens& tokens);

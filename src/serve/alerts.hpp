@@ -17,9 +17,9 @@
 #include "params/spec.hpp"
 #include "serve/alarm_sender.hpp"
 #include "serve/mqtt_link.hpp"
-#include "serve/scenarios.hpp"
 #include "serve/session.hpp"
 #include "serve/trigger_message.hpp"
+#include "session/scenarios.hpp"
 
 namespace talus::serve {
 

@@ -1,11 +1,6 @@
 #include "serve/api.hpp"
 
-#include <charconv>
 #include <utility>
-
-#include <fmt/format.h>
-
-#include "serve/json_text.hpp"
 
 namespace talus::serve {
 
@@ -37,7 +32,7 @@ void change(Session& session, const Request& request, const Respond& respond,
 }
 
 Response no_scenario(const std::string& name) {
-    return error_response(404, fmt::format("there is no scenario {}", tidy_name(name, 20)));
+    return to_response(session::no_scenario(name));
 }
 
 Response binary_response(std::string bytes) {
@@ -48,15 +43,7 @@ Response binary_response(std::string bytes) {
 }
 
 Result<std::optional<double>> number_of(const Request& request, const char* key, double low, double high) {
-    const auto found = request.query.find(key);
-    if (found == request.query.end()) return std::optional<double>();
-    const std::string& text = found->second;
-    double value = 0;
-    const auto [end, code] = std::from_chars(text.data(), text.data() + text.size(), value);
-    if (code != std::errc() || end != text.data() + text.size() || !(value >= low && value <= high)) {
-        return Error{fmt::format("{} = {}; it is a number from {} to {}", key, tidy_name(text, 30), low, high)};
-    }
-    return std::optional<double>(value);
+    return session::number_of(request.query, key, low, high);
 }
 
 }  // namespace talus::serve

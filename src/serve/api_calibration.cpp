@@ -1,5 +1,5 @@
 #include "serve/api.hpp"
-#include "serve/json_text.hpp"
+#include "session/json_text.hpp"
 
 namespace talus::serve {
 

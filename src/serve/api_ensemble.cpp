@@ -1,7 +1,7 @@
 #include <fmt/format.h>
 
 #include "serve/api.hpp"
-#include "serve/json_text.hpp"
+#include "session/json_text.hpp"
 
 namespace talus::serve {
 

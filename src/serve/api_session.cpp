@@ -1,21 +1,17 @@
-#include <algorithm>
 #include <map>
 #include <memory>
 #include <utility>
 
 #include <fmt/format.h>
 
-#include "core/try.hpp"
 #include "geo/orthophoto.hpp"
 #include "serve/api.hpp"
-#include "serve/json_text.hpp"
-#include "serve/thinned.hpp"
+#include "session/json_text.hpp"
+#include "session/thinned.hpp"
 #include "twin/json_keys.hpp"
 
 namespace talus::serve {
 namespace {
-
-using nlohmann::json;
 
 constexpr double min_cells = 100, most_cells = 16e6, usual_cells = 1e6;
 constexpr int photo_pixels = 4096;  // along the longer edge: what graphics cards take
@@ -33,12 +29,12 @@ void add_terrain(Router& router, Session& session) {
                         return;
                     }
                     const Grid<float>& whole = session.scene()->terrain.elevation();
-                    const int factor = thinning(whole.geometry, wanted->value_or(usual_cells));
+                    const int factor = session::thinning(whole.geometry, wanted->value_or(usual_cells));
                     session.worker().post([respond, encoded, factor, scene = session.scene()] {
                         Bytes& bytes = (*encoded)[factor];
                         if (!bytes) {
                             bytes = std::make_shared<const std::string>(
-                                twin::encode_grid(thinned_by(scene->terrain.elevation(), factor)));
+                                twin::encode_grid(session::thinned_by(scene->terrain.elevation(), factor)));
                         }
                         Response response;
                         response.type = "application/octet-stream";
@@ -73,40 +69,15 @@ void add_orthophoto(Router& router, Session& session) {
                 }});
 }
 
-/// What `{"copy_of": "A", "action": {...}}` asks for.
-struct WantedCopy {
-    std::string of;
-    json action;  ///< null: none
-};
-
-Result<WantedCopy> read_copy(const std::string& body) {
-    TALUS_ASSIGN(const auto wanted, parse_json(body));
-    const auto name = wanted.is_object() ? wanted.find("copy_of") : wanted.end();
-    if (name == wanted.end() || !name->is_string())
-        return Error{"the body is an object with copy_of, a scenario's name"};
-    TALUS_TRY(twin::check_keys(wanted, {"copy_of", "action"}));
-    return WantedCopy{name->get<std::string>(), wanted.value("action", json())};
-}
-
 void add_scenario(Session& session, const Request& request, const Respond& respond) {
     change(session, request, respond, [&](const std::string& by) {
-        auto wanted = read_copy(request.body);
+        auto wanted = parse_json(request.body);
         if (!wanted) {
             respond(error_response(400, wanted.error().message));
             return;
         }
         session.loop().post([respond, by, wanted = std::move(*wanted)](Scenarios& all) {
-            const auto index = all.find(wanted.of);
-            if (!index) {
-                respond(no_scenario(wanted.of));
-                return;
-            }
-            all.copy(*index, wanted.action, by, [respond](const Result<Copied>& made) {
-                if (!made) return respond(error_response(409, made.error().message));
-                const json object = made->done.created.empty() ? json() : json(made->done.created);
-                respond(
-                    json_response(200, {{"done", made->done.sentence}, {"created", made->name}, {"object", object}}));
-            });
+            session::copy(all, wanted, by, [respond](const session::Reply& reply) { respond(to_response(reply)); });
         });
     });
 }
@@ -114,14 +85,7 @@ void add_scenario(Session& session, const Request& request, const Respond& respo
 void end_scenario(Session& session, const Request& request, const Respond& respond) {
     change(session, request, respond, [&](const std::string&) {
         session.loop().post([respond, name = request.parameters.at("s")](Scenarios& all) {
-            const auto index = all.find(name);
-            if (!index) {
-                respond(no_scenario(name));
-                return;
-            }
-            const Status removed = all.remove(*index);
-            respond(removed ? json_response(200, {{"done", "scenario " + name + " ended"}, {"created", nullptr}})
-                            : error_response(409, removed.error().message));
+            respond(to_response(session::end(all, name)));
         });
     });
 }

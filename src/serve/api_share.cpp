@@ -5,8 +5,8 @@
 #include "core/try.hpp"
 #include "serve/access.hpp"
 #include "serve/api.hpp"
-#include "serve/json_text.hpp"
 #include "serve/sharing.hpp"
+#include "session/json_text.hpp"
 #include "twin/json_keys.hpp"
 
 namespace talus::serve {

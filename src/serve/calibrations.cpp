@@ -2,8 +2,6 @@
 
 #include <cmath>
 #include <exception>
-#include <pthread.h>
-#include <sys/resource.h>
 #include <system_error>
 #include <utility>
 
@@ -14,6 +12,7 @@
 #include "core/try.hpp"
 #include "ensemble/ensemble_folder.hpp"
 #include "params/fields.hpp"
+#include "serve/job.hpp"
 #include "twin/json_keys.hpp"
 #include "twin/setup.hpp"
 
@@ -23,7 +22,6 @@ namespace {
 using nlohmann::json;
 namespace fs = std::filesystem;
 
-constexpr int niceness = 10;  // a tenth of the live run's share where cores are short
 constexpr std::chrono::milliseconds tell_every{1000};
 constexpr std::size_t max_parameters = 6;
 
@@ -41,28 +39,9 @@ const params::Parameter* find_live_parameter(const std::string& key) {
     return nullptr;
 }
 
-/// One of "parameters" of the body.
-Result<ensemble::Factor> read_factor(const json& entry) {
-    if (!entry.is_object()) return Error{"parameters: each is an object with key, low and high"};
-    TALUS_TRY(twin::check_keys(entry, {"key", "low", "high"}));
-    const auto number = [&](const char* name) {
-        const auto found = entry.find(name);
-        return found != entry.end() && found->is_number() ? found->get<double>() : observe::never;
-    };
-    const auto name = entry.find("key");
-    const std::string key = name != entry.end() && name->is_string() ? name->get<std::string>() : "";
-    if (find_live_parameter(key) == nullptr) {
-        return Error{fmt::format("parameters: key = {}: must be one of the scene's parameters",
-                                 name == entry.end() ? json().dump() : name->dump().substr(0, 80))};
-    }
-    ensemble::Factor factor{key, {}};
-    factor.distribution.kind = stats::DistributionKind::uniform;
-    factor.distribution.low = number("low");
-    factor.distribution.high = number("high");
-    if (!(factor.distribution.low < factor.distribution.high)) {
-        return Error{fmt::format("{}: low and high must be numbers, low below high", key)};
-    }
-    return factor;
+Status is_live(const json& key) {
+    if (key.is_string() && find_live_parameter(key.get<std::string>()) != nullptr) return {};
+    return Error{fmt::format("parameters: key = {}: must be one of the scene's parameters", key.dump().substr(0, 80))};
 }
 
 Result<calibrate::CalibrationPlan> read_plan(const json& wanted) {
@@ -73,7 +52,7 @@ Result<calibrate::CalibrationPlan> read_plan(const json& wanted) {
         return Error{fmt::format("parameters: must be a list of 1 to {}, each with key, low and high", max_parameters)};
     }
     for (const json& entry : *list) {
-        TALUS_ASSIGN(auto factor, read_factor(entry));
+        TALUS_ASSIGN(auto factor, read_factor(entry, "parameters", is_live));
         for (const ensemble::Factor& other : plan.factors) {
             if (other.key == factor.key) return Error{fmt::format("parameters: {} is given twice", other.key)};
         }
@@ -103,7 +82,8 @@ Calibrations::Calibrations(std::shared_ptr<const scene::Scene> scene, Calibratio
       opened_(std::move(scene)),
       scene_(opened_),
       observed_(ensemble::observed_values(*scene_)),
-      tell_(std::move(tell)) {
+      tell_(std::move(tell)),
+      worker_(std::make_unique<Worker>("calibration", 10)) {
     status_ = {{"state", "idle"},
                {"why_not", why_none(observed_, settings_.source)},
                {"by", nullptr},
@@ -132,7 +112,7 @@ void Calibrations::close() {
         closed_ = true;
     }
     stop_ = true;
-    if (thread_.joinable()) thread_.join();
+    worker_.reset();
 }
 
 json Calibrations::describe() const {
@@ -160,11 +140,10 @@ void Calibrations::start(const json& wanted, const std::string& by, const Respon
         respond(error_response(409, "a calibration runs; cancel it or wait for its end"));
         return;
     }
-    if (thread_.joinable()) thread_.join();  // it has ended
     take_observations();
     busy_ = true;
     stop_ = false;
-    thread_ = std::thread([this, plan = std::move(*plan), by, respond] { work(plan, by, respond); });
+    worker_->post([this, plan = std::move(*plan), by, respond] { work(plan, by, respond); });
 }
 
 Status Calibrations::cancel() {
@@ -188,8 +167,6 @@ fs::path Calibrations::new_folder() const {
 }
 
 void Calibrations::work(calibrate::CalibrationPlan plan, const std::string& by, const Respond& respond) {
-    pthread_setname_np(pthread_self(), "calibration");
-    setpriority(PRIO_PROCESS, 0, niceness);  // of this thread and those that it starts
     const fs::path folder = new_folder();
     Ending ending;
     try {
@@ -224,7 +201,7 @@ void Calibrations::work(calibrate::CalibrationPlan plan, const std::string& by, 
     }
     std::error_code ignored;
     if (!settings_.keep) fs::remove_all(folder, ignored);
-    end(ending);  // the caller of the next start joins this thread with the lock held: it must not be locked again here
+    end(ending);
 }
 
 Calibrations::Ending Calibrations::calibrate_in(const fs::path& path, const calibrate::CalibrationPlan& plan,

@@ -7,7 +7,6 @@
 #include <memory>
 #include <mutex>
 #include <string>
-#include <thread>
 #include <vector>
 
 #include <nlohmann/json.hpp>
@@ -17,6 +16,7 @@
 #include "run/variants.hpp"
 #include "scene/scene.hpp"
 #include "serve/message.hpp"
+#include "serve/worker.hpp"
 
 namespace talus::serve {
 
@@ -93,7 +93,7 @@ class Calibrations {
     nlohmann::json followed_, taken_;  // observations of the setup; null: those of the scene
     bool busy_ = false, closed_ = false;
     Clock::time_point told_{};
-    std::thread thread_;
+    std::unique_ptr<Worker> worker_;
 };
 
 }  // namespace talus::serve

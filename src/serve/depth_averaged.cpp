@@ -1,8 +1,6 @@
 #include "serve/depth_averaged.hpp"
 
 #include <exception>
-#include <pthread.h>
-#include <sys/resource.h>
 #include <utility>
 
 #include <fmt/format.h>
@@ -12,13 +10,12 @@ namespace {
 
 using nlohmann::json;
 
-// Where cores are short, the live run's threads have three times the share of this one.
-constexpr int model_niceness = 5;
 constexpr std::chrono::milliseconds tell_share_every{500};
 
 }  // namespace
 
-DepthAveraged::DepthAveraged(Session& session) : session_(session) {
+DepthAveraged::DepthAveraged(Session& session)
+    : session_(session), worker_(std::make_unique<Worker>("depth-averaged", 5)) {
     session_.watch_setups([this] { look_again(); });
 }
 
@@ -32,8 +29,7 @@ void DepthAveraged::close() {
         closed_ = true;
         stop_ = true;
     }
-    wake_.notify_one();
-    if (thread_.joinable()) thread_.join();
+    worker_.reset();
 }
 
 const char* DepthAveraged::name_of(State state) {
@@ -90,7 +86,6 @@ void DepthAveraged::turn(bool on) {
                 tell(i);
             }
         }
-        if (on && !thread_.joinable()) thread_ = std::thread([this] { run(); });
     }
     look_again();
 }
@@ -125,9 +120,9 @@ void DepthAveraged::look(Scenarios& all) {
         fresh.key = std::move(key);
         fresh.asked = ++asked_;
         fresh.scene = scenario.for_depth_averaged();
+        worker_->post([this] { run_next(); });
         tell(i);
     }
-    wake_.notify_one();
 }
 
 /// The scenario that was asked about last; -1: none waits. Under the lock.
@@ -139,26 +134,21 @@ int DepthAveraged::next() const {
     return newest;
 }
 
-void DepthAveraged::run() {
-    pthread_setname_np(pthread_self(), "depth-averaged");
-    setpriority(PRIO_PROCESS, 0, model_niceness);  // of this thread, the only one that a run has
+void DepthAveraged::run_next() {
     std::unique_lock lock(mutex_);
-    while (true) {
-        wake_.wait(lock, [this] { return closed_ || next() >= 0; });
-        if (closed_) return;
-        running_ = next();
-        stop_ = false;
-        Slot& one = slot(running_);
-        one.state = State::running;
-        const std::uint64_t asked = one.asked;
-        const Work scene = std::move(one.scene);
-        tell(running_);
-        const int scenario = running_;
-        lock.unlock();
-        compute(scenario, asked, scene);
-        lock.lock();
-        running_ = -1;
-    }
+    running_ = next();
+    if (closed_ || running_ < 0) return;  // the question has been withdrawn
+    const int scenario = running_;
+    stop_ = false;
+    Slot& one = slot(scenario);
+    one.state = State::running;
+    const std::uint64_t asked = one.asked;
+    const Work scene = std::move(one.scene);
+    tell(scenario);
+    lock.unlock();
+    compute(scenario, asked, scene);
+    lock.lock();
+    running_ = -1;
 }
 
 void DepthAveraged::compute(int scenario, std::uint64_t asked, const Work& work) {

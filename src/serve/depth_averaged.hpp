@@ -3,17 +3,16 @@
 #include <array>
 #include <atomic>
 #include <chrono>
-#include <condition_variable>
 #include <cstdint>
 #include <functional>
 #include <memory>
 #include <mutex>
 #include <string>
-#include <thread>
 
 #include <nlohmann/json.hpp>
 
 #include "serve/session.hpp"
+#include "serve/worker.hpp"
 #include "twin/depth_averaged.hpp"
 
 namespace talus::serve {
@@ -56,7 +55,7 @@ class DepthAveraged {
     void look_again();
     void look(Scenarios& all);
     void drop(int scenario);
-    void run();
+    void run_next();
     void compute(int scenario, std::uint64_t asked, const Work& scene);
     void take_share(int scenario, std::uint64_t asked, double share);
     [[nodiscard]] int next() const;
@@ -67,14 +66,13 @@ class DepthAveraged {
 
     Session& session_;
     mutable std::mutex mutex_;  // guards the following members, except stop_
-    std::condition_variable wake_;
     std::array<Slot, Scenarios::max_count> slots_;
     std::uint64_t asked_ = 0;
     int running_ = -1;                // the scenario whose run is under way
     std::atomic<bool> stop_ = false;  // ends that run
     bool on_ = false, closed_ = false;
     Clock::time_point told_{};
-    std::thread thread_;
+    std::unique_ptr<Worker> worker_;  // a task for each question
 };
 
 }  // namespace talus::serve

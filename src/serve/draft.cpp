@@ -12,8 +12,8 @@
 #include "geo/vector.hpp"
 #include "scene/check.hpp"
 #include "scene/load.hpp"
-#include "serve/json_text.hpp"
 #include "serve/library.hpp"
+#include "session/json_text.hpp"
 
 namespace talus::serve {
 namespace {

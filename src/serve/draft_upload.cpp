@@ -106,10 +106,10 @@ std::uint64_t Draft::bytes_left() const {
     return limits_.bytes > there ? limits_.bytes - there : 0;
 }
 
-/// The file to read, somewhere below `to`.
-Result<fs::path> Draft::unpack(const std::string& name, const fs::path& upload, const fs::path& to) const {
+Result<fs::path> unpack_upload(const std::string& name, const fs::path& upload, const fs::path& to,
+                               const geo::ZipLimits& limits) {
     if (has_ending(name, ".zip")) {
-        TALUS_TRY(geo::unpack_zip(upload, to, {bytes_left(), limits_.files}));
+        TALUS_TRY(geo::unpack_zip(upload, to, limits));
         return only_file(name, to);
     }
     const bool packed = has_ending(name, ".gz");
@@ -126,7 +126,7 @@ Result<fs::path> Draft::unpack(const std::string& name, const fs::path& upload, 
     const fs::path file = to / upload_name_of(inner);
     fs::create_directories(to, error);
     if (!error && packed) {
-        TALUS_TRY(geo::unpack_gzip(upload, file, {bytes_left(), 1}));
+        TALUS_TRY(geo::unpack_gzip(upload, file, {limits.bytes, 1}));
     } else if (!error) {
         fs::rename(upload, file, error);
     }
@@ -143,7 +143,7 @@ Result<Draft::Upload> Draft::convert(std::string_view role, const std::string& n
         made.file = std::move(unpacked.scene);
     } else {
         const fs::path foreign = folder_ / "foreign";
-        TALUS_ASSIGN(const fs::path file, unpack(name, upload, foreign));
+        TALUS_ASSIGN(const fs::path file, unpack_upload(name, upload, foreign, {most, limits_.files}));
         geo::ForeignWanted wanted = wanted_for(role);
         wanted.cells = role == "orthophoto" ? largest_photo : limits_.cells;
         std::error_code error;

@@ -15,9 +15,9 @@
 #include "scene/builtin.hpp"
 #include "scene/bundle.hpp"
 #include "serve/access.hpp"
-#include "serve/json_text.hpp"
 #include "serve/library.hpp"
-#include "serve/thinned.hpp"
+#include "session/json_text.hpp"
+#include "session/thinned.hpp"
 #include "twin/json_keys.hpp"
 #include "twin/scenario.hpp"
 
@@ -272,7 +272,8 @@ void Drafts::relief(const std::string& id, const Respond& respond) {
         if (terrain == nullptr) return respond(error_response(409, "there is no terrain yet, or it cannot be one"));
         Response response;
         response.type = "application/octet-stream";
-        response.body = std::make_shared<const std::string>(twin::encode_grid(thinned(*terrain, relief_cells)));
+        response.body =
+            std::make_shared<const std::string>(twin::encode_grid(session::thinned(*terrain, relief_cells)));
         respond(response);
     });
 }

@@ -13,7 +13,7 @@
 #include "products/text_file.hpp"
 #include "scene/bundle.hpp"
 #include "serve/api.hpp"
-#include "serve/json_text.hpp"
+#include "session/json_text.hpp"
 
 namespace talus::serve {
 namespace {

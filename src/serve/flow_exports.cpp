@@ -13,7 +13,7 @@
 #include "core/try.hpp"
 #include "params/fields.hpp"
 #include "serve/api.hpp"
-#include "serve/json_text.hpp"
+#include "session/json_text.hpp"
 #include "twin/json_keys.hpp"
 
 namespace talus::serve {

@@ -11,7 +11,7 @@
 #include <fmt/ranges.h>
 
 #include "core/try.hpp"
-#include "serve/json_text.hpp"
+#include "session/json_text.hpp"
 #include "twin/json_keys.hpp"
 #include "validate/suite.hpp"
 
@@ -40,24 +40,14 @@ Result<std::string> name_in(const json& body, const char* key) {
     return found->get<std::string>();
 }
 
-/// "material.viscosity=0.01:0.6", of an entry of "factors".
-Result<std::string> read_factor_text(const json& entry) {
-    if (!entry.is_object()) return Error{"factors: each is an object with key, low and high"};
-    TALUS_TRY(twin::check_keys(entry, {"key", "low", "high"}));
-    TALUS_ASSIGN(const std::string key, name_in(entry, "key"));
-    const bool plain = std::all_of(key.begin(), key.end(), [](unsigned char c) {
+Status is_key(const json& key) {
+    const std::string text = key.is_string() ? key.get<std::string>() : "";
+    if (text.empty()) return Error{"key: is needed, a name"};
+    const bool plain = std::all_of(text.begin(), text.end(), [](unsigned char c) {
         return std::isalnum(c) != 0 || c == '_' || c == '.' || c == '[' || c == ']';
     });
-    if (!plain) return Error{fmt::format("key = {}: is no key of a scene", twin::shown(entry["key"]))};
-    const auto number = [&](const char* name) {
-        const auto found = entry.find(name);
-        return found != entry.end() && found->is_number() ? found->get<double>() : std::nan("");
-    };
-    const double low = number("low"), high = number("high");
-    if (!std::isfinite(low) || !std::isfinite(high) || !(low < high)) {
-        return Error{fmt::format("{}: low and high must be numbers, low below high", key)};
-    }
-    return fmt::format("{}={:.9g}:{:.9g}", key, low, high);
+    if (!plain) return Error{fmt::format("key = {}: is no key of a scene", twin::shown(key))};
+    return {};
 }
 
 Status read_factors(const json& body, std::size_t most, WantedJob& wanted) {
@@ -66,7 +56,9 @@ Status read_factors(const json& body, std::size_t most, WantedJob& wanted) {
         return Error{fmt::format("factors: must be a list of 1 to {}, each with key, low and high", most)};
     }
     for (const json& entry : *list) {
-        TALUS_ASSIGN(const std::string factor, read_factor_text(entry));
+        TALUS_ASSIGN(const ensemble::Factor read, read_factor(entry, "factors", is_key));
+        const std::string factor =
+            fmt::format("{}={:.9g}:{:.9g}", read.key, read.distribution.low, read.distribution.high);
         TALUS_TRY(add_factor(wanted.ensemble, factor));
         wanted.factors.push_back(factor);
     }
@@ -131,6 +123,26 @@ std::string quoted(const std::string& word) {
 }
 
 }  // namespace
+
+Result<ensemble::Factor> read_factor(const json& entry, const char* list,
+                                     const std::function<Status(const json& key)>& check_key) {
+    if (!entry.is_object()) return Error{fmt::format("{}: each is an object with key, low and high", list)};
+    TALUS_TRY(twin::check_keys(entry, {"key", "low", "high"}));
+    const json key = entry.value("key", json());
+    TALUS_TRY(check_key(key));
+    const auto number = [&](const char* name) {
+        const auto found = entry.find(name);
+        return found != entry.end() && found->is_number() ? found->get<double>() : std::nan("");
+    };
+    ensemble::Factor factor{key.get<std::string>(), {}};
+    factor.distribution.kind = stats::DistributionKind::uniform;
+    factor.distribution.low = number("low");
+    factor.distribution.high = number("high");
+    if (!(factor.distribution.low < factor.distribution.high)) {
+        return Error{fmt::format("{}: low and high must be numbers, low below high", factor.key)};
+    }
+    return factor;
+}
 
 const char* job_kind_name(JobKind kind) {
     return kind_names[static_cast<std::size_t>(kind)];
@@ -239,25 +251,25 @@ const char* report_of(JobKind kind) {
 }
 
 std::string job_text(const Job& job) {
-    return to_text({{"talus_job", 1},
-                    {"id", job.id},
-                    {"kind", job_kind_name(job.kind)},
-                    {"state", job_state_name(job.state)},
-                    {"title", job.title},
-                    {"scene", job.scene},
-                    {"arguments", job.arguments},
-                    {"message", job.message},
-                    {"begun_at", job.begun_at},
-                    {"ended_at", job.ended_at},
-                    {"process", job.process},
-                    {"done", job.done},
-                    {"failed", job.failed},
-                    {"count", job.count}}) +
+    return session::to_text({{"talus_job", 1},
+                             {"id", job.id},
+                             {"kind", job_kind_name(job.kind)},
+                             {"state", job_state_name(job.state)},
+                             {"title", job.title},
+                             {"scene", job.scene},
+                             {"arguments", job.arguments},
+                             {"message", job.message},
+                             {"begun_at", job.begun_at},
+                             {"ended_at", job.ended_at},
+                             {"process", job.process},
+                             {"done", job.done},
+                             {"failed", job.failed},
+                             {"count", job.count}}) +
            "\n";
 }
 
 Result<Job> read_job(const std::string& text) {
-    TALUS_ASSIGN(const json file, parse_json(text));
+    TALUS_ASSIGN(const json file, session::parse_json(text));
     if (!file.is_object() || file.value("talus_job", json()) != 1) return Error{"this is no job of a start page"};
     try {
         Job job;

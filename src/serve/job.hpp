@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <filesystem>
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -27,6 +28,11 @@ enum class JobState { waiting, running, cancelling, done, cancelled, interrupted
 struct JobLimits {
     static constexpr std::size_t runs = 2000, ensemble_factors = 8, calibration_factors = 6;
 };
+
+/// An entry of a list of factors in a request: an object with key, low and high, uniform between them. `list`: the name
+/// of the list, for errors; `check_key`: which keys it takes, all of them texts.
+[[nodiscard]] Result<ensemble::Factor> read_factor(const nlohmann::json& entry, const char* list,
+                                                   const std::function<Status(const nlohmann::json& key)>& check_key);
 
 /// What the body of `POST /api/jobs` asks for.
 struct WantedJob {

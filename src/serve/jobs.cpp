@@ -15,7 +15,7 @@
 #include "core/child_process.hpp"
 #include "core/try.hpp"
 #include "serve/access.hpp"
-#include "serve/json_text.hpp"
+#include "session/json_text.hpp"
 
 namespace talus::serve {
 namespace {

@@ -16,7 +16,7 @@
 #include "core/try.hpp"
 #include "scene/builtin.hpp"
 #include "scene/scene.hpp"
-#include "serve/json_text.hpp"
+#include "session/json_text.hpp"
 
 namespace talus::serve {
 namespace {
@@ -35,7 +35,7 @@ std::string text_or_none(const json& object, const char* key) {
 json read_json(const fs::path& file, std::uintmax_t longest) {
     const auto text = read_whole(file, longest);
     if (!text) return {};
-    auto parsed = parse_json(*text);
+    auto parsed = session::parse_json(*text);
     return parsed ? std::move(*parsed) : json();
 }
 
@@ -175,7 +175,7 @@ Status Library::remember(const fs::path& file, const std::string& title) const {
     for (const json& entry : before.is_array() ? before : json::array()) {
         if (list.size() < recent_count && text_or_none(entry, "file") != whole.string()) list.push_back(entry);
     }
-    return write_whole(folder_ / "recent.json", to_text(list) + "\n");
+    return write_whole(folder_ / "recent.json", session::to_text(list) + "\n");
 }
 
 Status Library::forget(const std::string& id) const {
@@ -185,7 +185,7 @@ Status Library::forget(const std::string& id) const {
         if (id_of(text_or_none(entry, "file")) != id) list.push_back(entry);
     }
     if (!before.is_array() || list.size() == before.size()) return Error{"this scene is not among the recent ones"};
-    return write_whole(folder_ / "recent.json", to_text(list) + "\n");
+    return write_whole(folder_ / "recent.json", session::to_text(list) + "\n");
 }
 
 Status Library::remove_scene(const std::string& id) const {

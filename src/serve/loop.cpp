@@ -20,7 +20,7 @@ Loop::Loop(std::unique_ptr<run::Threads> threads, std::unique_ptr<twin::Scenario
            std::function<void(std::string)> failed)
     : threads_(std::move(threads)),
       scenarios_(std::move(first), watcher,
-                 [this](Work work, std::function<void()> then) {
+                 [this](session::Work work, std::function<void()> then) {
                      preparer_.post([this, work = std::move(work), then = std::move(then)] {
                          work(stop_);
                          post([then](Scenarios&) { then(); });
@@ -64,7 +64,7 @@ void Loop::work_until_done() {
         lock.unlock();
         for (Task& task : now_due) task(scenarios_);
         now_due.clear();
-        const auto next = scenarios_.work(Clock::now());
+        const auto next = scenarios_.work(&Clock::now);
         lock.lock();
         const auto called = [this] { return done_ || !tasks_.empty(); };
         if (!next) {

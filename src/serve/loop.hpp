@@ -11,10 +11,18 @@
 
 #include "core/result.hpp"
 #include "run/threads.hpp"
-#include "serve/scenarios.hpp"
 #include "serve/worker.hpp"
+#include "session/scenarios.hpp"
 
 namespace talus::serve {
+
+using session::Audience;
+using session::Clock;
+using session::Copied;
+using session::FrameSet;
+using session::RunAlerts;
+using session::Scenarios;
+using session::Watcher;
 
 /// The only thread that uses the scenarios. Others post tasks, which run between two steps, in order; so nothing in the
 /// simulation needs a lock. Sleeps while nothing is due.

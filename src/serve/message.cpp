@@ -1,22 +1,8 @@
 #include "serve/message.hpp"
 
-#include "serve/json_text.hpp"
+#include <array>
 
 namespace talus::serve {
-
-const char* role_name(Role role) {
-    switch (role) {
-        case Role::viewer:
-            return "viewer";
-        case Role::controller:
-            return "controller";
-        case Role::trigger:
-            return "trigger";
-        case Role::nobody:
-            break;
-    }
-    return "nobody";
-}
 
 Response json_response(int status, const nlohmann::json& content) {
     Response response;
@@ -27,6 +13,15 @@ Response json_response(int status, const nlohmann::json& content) {
 
 Response error_response(int status, const std::string& sentence) {
     return json_response(status, {{"error", sentence}});
+}
+
+Response to_response(const session::Reply& reply) {
+    constexpr std::array statuses{200, 400, 404, 409};  // as Outcome has them
+    Response response;
+    response.status = statuses[static_cast<std::size_t>(reply.outcome)];
+    if (reply.binary) response.type = "application/octet-stream";
+    response.body = reply.body;
+    return response;
 }
 
 }  // namespace talus::serve

@@ -1,29 +1,27 @@
 #pragma once
 
 #include <functional>
-#include <map>
 #include <memory>
 #include <optional>
 #include <string>
 
 #include <nlohmann/json.hpp>
 
+#include "session/json_text.hpp"
+#include "session/requests.hpp"
+#include "session/role.hpp"
+
 namespace talus::serve {
 
-/// Permissions of a token. Each includes those before it, except that a trigger's has its own route and nothing else:
-/// see may().
-enum class Role { nobody, trigger, viewer, controller };
-
-/// Whether a role suffices where `needs` is asked for.
-[[nodiscard]] constexpr bool may(Role role, Role needs) {
-    if (role == Role::trigger || needs == Role::trigger) return role == needs || needs == Role::nobody;
-    return role >= needs;
-}
-
-/// "viewer", "controller", "trigger", "nobody".
-[[nodiscard]] const char* role_name(Role role);
-
-using Arguments = std::map<std::string, std::string, std::less<>>;
+// The words of a session, which are those of its messages.
+using session::Arguments;
+using session::Bytes;
+using session::may;
+using session::parse_json;
+using session::Role;
+using session::role_name;
+using session::tidy_name;
+using session::to_text;
 
 /// An HTTP request that has passed the checks of host, origin and token.
 struct Request {
@@ -35,8 +33,6 @@ struct Request {
     std::string secret;  ///< header Talus-Person: what a page received on its WebSocket; empty: a program
     Role role = Role::nobody;
 };
-
-using Bytes = std::shared_ptr<const std::string>;
 
 struct Response {
     int status = 200;
@@ -65,5 +61,6 @@ class Intake {
 [[nodiscard]] Response json_response(int status, const nlohmann::json& content);
 /// `{"error": sentence}`
 [[nodiscard]] Response error_response(int status, const std::string& sentence);
+[[nodiscard]] Response to_response(const session::Reply& reply);
 
 }  // namespace talus::serve

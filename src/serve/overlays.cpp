@@ -13,7 +13,7 @@
 #include "geo/longitude_latitude.hpp"
 #include "serve/api.hpp"
 #include "serve/draft.hpp"
-#include "serve/json_text.hpp"
+#include "session/json_text.hpp"
 #include "twin/json_keys.hpp"
 
 namespace talus::serve {

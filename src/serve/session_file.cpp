@@ -7,8 +7,8 @@
 
 #include "core/try.hpp"
 #include "run/threads.hpp"
-#include "serve/json_text.hpp"
 #include "serve/library.hpp"
+#include "session/json_text.hpp"
 #include "twin/json_keys.hpp"
 
 namespace talus::serve {

@@ -10,7 +10,7 @@
 #include "scene/builtin.hpp"
 #include "scene/bundle.hpp"
 #include "serve/api.hpp"
-#include "serve/json_text.hpp"
+#include "session/json_text.hpp"
 #include "twin/json_keys.hpp"
 
 namespace talus::serve {

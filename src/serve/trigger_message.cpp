@@ -8,7 +8,7 @@
 #include <fmt/format.h>
 
 #include "core/try.hpp"
-#include "serve/json_text.hpp"
+#include "session/json_text.hpp"
 #include "twin/json_keys.hpp"
 
 namespace talus::serve {
@@ -46,7 +46,7 @@ Result<TriggerMessage> read_trigger_message(std::string_view text, WallTime now)
     if (text.size() > largest_trigger_message) {
         return Error{fmt::format("the message has {} bytes; it may have {}", text.size(), largest_trigger_message)};
     }
-    TALUS_ASSIGN(const json message, parse_json(text));
+    TALUS_ASSIGN(const json message, session::parse_json(text));
     if (!message.is_object()) return Error{"the message must be a JSON object with trigger, the name of a trigger"};
     TALUS_TRY(twin::check_keys(message, {"trigger", "values", "time", "reason"}));
     TriggerMessage read;

@@ -1,11 +1,10 @@
 #include "serve/worker.hpp"
 
 #include <pthread.h>
+#include <sys/resource.h>
 #include <utility>
 
 namespace talus::serve {
-
-Worker::Worker(const char* name) : thread_([this, name] { run(name); }) {}
 
 Worker::~Worker() {
     {
@@ -13,19 +12,21 @@ Worker::~Worker() {
         done_ = true;
     }
     wake_.notify_one();
-    thread_.join();
+    if (thread_.joinable()) thread_.join();
 }
 
 void Worker::post(std::function<void()> task) {
     {
         const std::lock_guard lock(mutex_);
         tasks_.push_back(std::move(task));
+        if (!thread_.joinable()) thread_ = std::thread([this] { run(); });
     }
     wake_.notify_one();
 }
 
-void Worker::run(const char* name) {
-    pthread_setname_np(pthread_self(), name);
+void Worker::run() {
+    pthread_setname_np(pthread_self(), name_);
+    if (niceness_ > 0) setpriority(PRIO_PROCESS, 0, niceness_);  // of this thread
     std::unique_lock lock(mutex_);
     while (true) {
         wake_.wait(lock, [this] { return done_ || !tasks_.empty(); });

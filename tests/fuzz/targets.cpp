@@ -17,9 +17,9 @@
 #include "scene/hydrograph.hpp"
 #include "scene/scene.hpp"
 #include "serve/client.hpp"
-#include "serve/json_text.hpp"
 #include "serve/server.hpp"
 #include "serve/url.hpp"
+#include "session/json_text.hpp"
 #include "support/fixtures.hpp"
 #include "twin/journal.hpp"
 #include "twin/setup_file.hpp"
@@ -96,7 +96,7 @@ bool json_text(const std::string& bytes) {
     const auto read = geo::parse_json(bytes);
     read_or_refused(read);
     if (read) require(geo::parse_json(read->dump(-1, ' ', true)).ok(), "what was read can be written and read");
-    (void)serve::tidy_name(bytes, 40);
+    (void)session::tidy_name(bytes, 40);
     return read.ok();
 }
 

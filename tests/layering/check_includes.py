@@ -29,10 +29,11 @@ BELOW = {
     "validate": ["core", "params", "terrain", "simd", "sim", "depth", "geo", "observe", "scene", "run", "report", "products"],
     "bench": ["core", "params", "terrain", "simd", "sim", "depth", "geo", "observe", "scene", "run", "report", "products"],
     "twin": ["core", "params", "terrain", "simd", "sim", "depth", "geo", "observe", "scene", "run", "report", "products"],
+    "session": ["core", "params", "terrain", "simd", "sim", "depth", "geo", "observe", "scene", "run", "report", "products", "twin"],
     "serve": ["core", "params", "terrain", "simd", "sim", "depth", "geo", "observe", "scene", "run", "report", "products", "stats", "ensemble",
-              "calibrate", "validate", "twin"],
+              "calibrate", "validate", "twin", "session"],
     "apps": ["core", "params", "terrain", "simd", "sim", "depth", "geo", "observe", "scene", "run", "report", "products", "stats", "ensemble",
-             "calibrate", "validate", "bench", "twin", "serve"],
+             "calibrate", "validate", "bench", "twin", "session", "serve"],
 }
 INCLUDE = re.compile(r'^\s*#\s*include\s*([<"])([^>"]+)[>"]')
 NAMESPACE = re.compile(r"^namespace (talus\b[\w:]*) \{")
@@ -40,6 +41,7 @@ OWN_NAMESPACE = {"sim/cpu", "sim/device", "sim/reference", "sim/stages", "observ
 GDAL = re.compile(r"^(gdal|ogr|cpl_|proj\b|proj\.h)")
 TESTING = re.compile(r"^(tests|support|gtest|gmock)/")
 BOOST = re.compile(r"^boost/")
+ALONE = re.compile(r"^(thread|mutex|shared_mutex|condition_variable|future|filesystem|fstream|tbb/|oneapi/|netinet/|sys/socket)")
 THIRD_PARTY = re.compile(r"^(fmt|spdlog|nlohmann|toml\+\+|CLI|tbb|oneapi|boost)/|^toml\.hpp")
 
 
@@ -51,6 +53,8 @@ def offence(layer, name):
         return "only src/geo includes GDAL and PROJ"
     if BOOST.match(name) and layer != "serve" and not (layer == "stats" and name.startswith("boost/random/")):
         return "only src/serve includes Boost, and src/stats its random sequences"
+    if ALONE.match(name) and layer == "session":
+        return "a session knows no thread, socket or file: time and work are given to it"
     if THIRD_PARTY.match(name) and layer == "core":
         return "core uses the standard library only"
     if name.startswith("../"):
@@ -81,6 +85,23 @@ def misplaced(path, name):
     return not (name + "::").startswith("talus::" + folder.replace("/", "::") + "::")
 
 
+def reached(root, path, seen):
+    """GDAL, PROJ or Boost among all that a file, given relative to the root, includes; None if none."""
+    for line in (root / path).read_text().splitlines():
+        match = INCLUDE.match(line)
+        if match is None:
+            continue
+        if GDAL.match(match[2]) or BOOST.match(match[2]):
+            return f"{path} includes {match[2]}"
+        below = pathlib.Path("src") / match[2]
+        if below not in seen and (root / below).is_file():
+            seen.add(below)
+            found = reached(root, below, seen)
+            if found:
+                return found
+    return None
+
+
 def check(root):
     offences = []
     files = [f for top in ("src", "apps") for f in (root / top).rglob("*") if f.suffix in (".hpp", ".cpp", ".cu")]
@@ -90,6 +111,9 @@ def check(root):
         if layer is None:
             offences.append(f"{path}: this folder is in no layer; name it in tests/layering/check_includes.py")
             continue
+        found = layer == "session" and reached(root, path, set())
+        if found:
+            offences.append(f"{path}: a session is for a page, too, but {found}")
         for number, line in enumerate(file.read_text().splitlines(), 1):
             match = INCLUDE.match(line)
             reason = match and offence(layer, match[2])
@@ -114,13 +138,15 @@ def self_test():
                 ("bench", "validate/set_up.hpp"), ("twin", "serve/loop.hpp"), ("apps", "boost/asio.hpp"),
                 ("stats", "boost/asio.hpp"), ("serve", "gdal_priv.h"), ("scene", "bench/measure.hpp"), ("products", "twin/scenario.hpp"),
                 ("twin", "bench/measure.hpp"), ("sim", "depth/solver.hpp"), ("depth", "observe/observer.hpp"),
-                ("depth", "scene/scene.hpp")]
+                ("depth", "scene/scene.hpp"), ("twin", "session/room.hpp"), ("session", "serve/loop.hpp"),
+                ("session", "boost/asio.hpp"), ("session", "mutex"), ("session", "filesystem")]
     accepted = [("params", "core/result.hpp"), ("sim", "sim/model.hpp"), ("sim", "terrain/terrain.hpp"),
                 ("geo", "gdal_priv.h"), ("geo", "proj.h"), ("scene", "geo/raster.hpp"), ("apps", "products/products.hpp"),
                 ("scene", "fmt/format.h"), ("core", "vector"), ("depth", "sim/physics/resistance.hpp"), ("run", "depth/solver.hpp"), ("apps", "progress.hpp"),
                 ("calibrate", "report/hazard_map.hpp"), ("apps", "validate/suite.hpp"), ("validate", "report/chart.hpp"),
                 ("apps", "bench/measure.hpp"), ("run", "scene/scene.hpp"), ("bench", "scene/scene.hpp"), ("apps", "twin/scenario.hpp"),
-                ("twin", "products/products.hpp"), ("twin", "zlib.h"), ("stats", "boost/random/sobol.hpp")]
+                ("twin", "products/products.hpp"), ("twin", "zlib.h"), ("stats", "boost/random/sobol.hpp"),
+                ("session", "twin/scenario.hpp"), ("session", "atomic"), ("serve", "session/room.hpp"), ("serve", "mutex")]
     wrong = [f"{layer} <- {name} passes" for layer, name in rejected if offence(layer, name) is None]
     wrong += [f"{layer} <- {name} is rejected" for layer, name in accepted if offence(layer, name) is not None]
     for file, name, is_wrong in [("src/geo/raster.hpp", "talus", True), ("src/geo/raster.hpp", "talus::geometry", True),

@@ -1,4 +1,4 @@
-#include "serve/scenarios.hpp"
+#include "session/scenarios.hpp"
 
 #include <atomic>
 #include <functional>
@@ -10,7 +10,7 @@
 
 #include "twin/twin_fixtures.hpp"
 
-namespace talus::serve {
+namespace talus::session {
 namespace {
 
 using nlohmann::json;
@@ -89,4 +89,4 @@ TEST_F(ActionKeys, that_are_not_known_are_refused) {
 }
 
 }  // namespace
-}  // namespace talus::serve
+}  // namespace talus::session

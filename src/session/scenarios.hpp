@@ -13,11 +13,10 @@
 #include <nlohmann/json.hpp>
 
 #include "core/result.hpp"
-#include "serve/message.hpp"
-#include "serve/pace.hpp"
+#include "session/pace.hpp"
 #include "twin/scenario.hpp"
 
-namespace talus::serve {
+namespace talus::session {
 
 /// Requests of the viewers of a scenario.
 struct Audience {
@@ -62,6 +61,9 @@ struct Copied {
 /// scenarios, between two steps.
 using Work = std::function<void(const std::atomic<bool>& stop)>;
 using Elsewhere = std::function<void(Work work, std::function<void()> then)>;
+
+/// A clock, for what measures how long something took.
+using Now = std::function<Clock::time_point()>;
 
 template <class Value>
 using Answer = std::function<void(Result<Value>)>;
@@ -117,7 +119,7 @@ class Scenarios {
 
     /// Takes a step if one is due, and notifies the watcher. Returns when to call it again; empty: not before another
     /// call.
-    std::optional<Clock::time_point> work(Clock::time_point now);
+    std::optional<Clock::time_point> work(const Now& clock);
 
     static constexpr const char* name_of(int index) {
         constexpr std::array<const char*, max_count> letters{"A", "B", "C", "D", "E", "F"};
@@ -190,4 +192,4 @@ class Scenarios {
     Pace pace_;
 };
 
-}  // namespace talus::serve
+}  // namespace talus::session

@@ -1,9 +1,9 @@
-#include "serve/json_text.hpp"
+#include "session/json_text.hpp"
 
 #include "core/visible_text.hpp"
 #include "geo/json_text.hpp"
 
-namespace talus::serve {
+namespace talus::session {
 namespace {
 
 std::string utf8(const nlohmann::json& content) {
@@ -43,4 +43,4 @@ std::string tidy_name(std::string_view name, std::size_t longest) {
     return tidy;
 }
 
-}  // namespace talus::serve
+}  // namespace talus::session

@@ -1,10 +1,10 @@
-#include "serve/people.hpp"
+#include "session/people.hpp"
 
 #include <map>
 
 #include <gtest/gtest.h>
 
-namespace talus::serve {
+namespace talus::session {
 namespace {
 
 using std::chrono::seconds;
@@ -166,4 +166,4 @@ TEST_F(PeopleTest, names_are_tidied_and_colours_differ) {
 }
 
 }  // namespace
-}  // namespace talus::serve
+}  // namespace talus::session

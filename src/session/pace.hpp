@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <optional>
 
-namespace talus::serve {
+namespace talus::session {
 
 using Clock = std::chrono::steady_clock;
 
@@ -43,4 +43,4 @@ class RateMeter {
     double steps_per_second_ = 0, real_time_factor_ = 0;
 };
 
-}  // namespace talus::serve
+}  // namespace talus::session

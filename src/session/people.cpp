@@ -1,13 +1,13 @@
-#include "serve/people.hpp"
+#include "session/people.hpp"
 
 #include <algorithm>
 
 #include <fmt/format.h>
 
-#include "serve/access.hpp"
-#include "serve/json_text.hpp"
+#include "session/json_text.hpp"
+#include "session/secret.hpp"
 
-namespace talus::serve {
+namespace talus::session {
 namespace {
 
 constexpr std::size_t longest_person_name = 40;
@@ -195,4 +195,4 @@ nlohmann::json People::to_json() const {
     return {{"people", people}, {"controller", find(holder_) ? json(holder_) : json()}, {"request", request}};
 }
 
-}  // namespace talus::serve
+}  // namespace talus::session

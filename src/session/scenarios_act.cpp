@@ -6,13 +6,13 @@
 #include <fmt/format.h>
 
 #include "core/try.hpp"
-#include "serve/json_text.hpp"
-#include "serve/scenarios.hpp"
+#include "session/json_text.hpp"
+#include "session/scenarios.hpp"
 #include "twin/json_keys.hpp"
 
 // What people do with scenarios.
 
-namespace talus::serve {
+namespace talus::session {
 namespace {
 
 using nlohmann::json;
@@ -352,4 +352,4 @@ Status Scenarios::remove(int index) {
     return {};
 }
 
-}  // namespace talus::serve
+}  // namespace talus::session

@@ -2,7 +2,7 @@
 
 #include "core/grid.hpp"
 
-namespace talus::serve {
+namespace talus::session {
 
 /// The grid with every so many columns and rows, so that at most `max_cells` remain: the middle one of as many.
 [[nodiscard]] Grid<float> thinned(const Grid<float>& whole, double max_cells);
@@ -13,4 +13,4 @@ namespace talus::serve {
 /// The middle one of every `factor` x `factor` cells.
 [[nodiscard]] Grid<float> thinned_by(const Grid<float>& whole, int factor);
 
-}  // namespace talus::serve
+}  // namespace talus::session

@@ -1,6 +1,6 @@
-#include "serve/pace.hpp"
+#include "session/pace.hpp"
 
-namespace talus::serve {
+namespace talus::session {
 namespace {
 
 using Seconds = std::chrono::duration<double>;
@@ -50,4 +50,4 @@ void RateMeter::count(double time_step, Clock::time_point now) {
     simulated_ = 0;
 }
 
-}  // namespace talus::serve
+}  // namespace talus::session

@@ -9,9 +9,9 @@
 #include <nlohmann/json.hpp>
 
 #include "core/result.hpp"
-#include "serve/message.hpp"
+#include "session/role.hpp"
 
-namespace talus::serve {
+namespace talus::session {
 
 struct Person {
     std::string id, name, colour;
@@ -74,4 +74,4 @@ class People {
     std::uint64_t joined_ = 0;
 };
 
-}  // namespace talus::serve
+}  // namespace talus::session

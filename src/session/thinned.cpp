@@ -1,8 +1,8 @@
-#include "serve/thinned.hpp"
+#include "session/thinned.hpp"
 
 #include <algorithm>
 
-namespace talus::serve {
+namespace talus::session {
 namespace {
 
 int reduced(int count, int factor) {
@@ -42,4 +42,4 @@ Grid<float> thinned_by(const Grid<float>& whole, int factor) {
     return thin;
 }
 
-}  // namespace talus::serve
+}  // namespace talus::session

@@ -7,7 +7,7 @@
 
 #include "core/result.hpp"
 
-namespace talus::serve {
+namespace talus::session {
 
 /// Parses a received text. Errors: not JSON (with the place), nested too deeply, a key given twice, not UTF-8.
 [[nodiscard]] Result<nlohmann::json> parse_json(std::string_view text);
@@ -20,4 +20,4 @@ namespace talus::serve {
 /// `longest` code points.
 [[nodiscard]] std::string tidy_name(std::string_view name, std::size_t longest);
 
-}  // namespace talus::serve
+}  // namespace talus::session

@@ -1,11 +1,11 @@
-#include "serve/scenarios.hpp"
+#include "session/scenarios.hpp"
 
 #include <algorithm>
 #include <iterator>
 #include <optional>
 #include <utility>
 
-namespace talus::serve {
+namespace talus::session {
 namespace {
 
 using nlohmann::json;
@@ -173,7 +173,8 @@ void Scenarios::tell_frames(int index, Clock::time_point now) {
         next_time(slot.next_frame, interval_of(std::clamp(slot.audience.rate_hz, 0.1, highest_rate)), now);
 }
 
-std::optional<Clock::time_point> Scenarios::work(Clock::time_point now) {
+std::optional<Clock::time_point> Scenarios::work(const Now& clock) {
+    Clock::time_point now = clock();
     std::optional<Clock::time_point> next;
     const auto wait_for = [&](Clock::time_point when) { next = next ? std::min(*next, when) : when; };
 
@@ -185,7 +186,7 @@ std::optional<Clock::time_point> Scenarios::work(Clock::time_point now) {
         if (due <= now) {
             const double before = behind->scenario->time();
             advance(*behind);
-            now = Clock::now();
+            now = clock();
             behind->rate.count(behind->scenario->time() - before, now);
             // Viewers are told immediately that, and why, the run does not continue.
             if (!behind->ready()) want_all();
@@ -214,4 +215,4 @@ std::optional<Clock::time_point> Scenarios::work(Clock::time_point now) {
     return next;
 }
 
-}  // namespace talus::serve
+}  // namespace talus::session
