@@ -30,7 +30,7 @@ Task short_task(params::InternalFriction method = params::InternalFriction::stre
     return task;
 }
 
-TEST(Measure, FillsARow) {
+TEST(Measure, fills_a_row) {
     Calibration calibration;
     const Start start = small_slab();
     const Result<Row> row = measure(start, short_task(), calibration);
@@ -52,7 +52,7 @@ TEST(Measure, FillsARow) {
     EXPECT_GT(row->stage_seconds[static_cast<std::size_t>(sim::Stage::solve_density)], 0);
 }
 
-TEST(Measure, ObservingIsPartOfTheStep) {
+TEST(Measure, observing_is_part_of_the_step) {
     Calibration calibration;
     Start start = small_slab();
     start.outputs.map_cell = 0.02;  // so fine that maps take a tenth of the time
@@ -62,7 +62,7 @@ TEST(Measure, ObservingIsPartOfTheStep) {
     EXPECT_GT(row->stage_seconds[static_cast<std::size_t>(sim::Stage::observe)], 2e-3 * row->step_seconds);
 }
 
-TEST(Measure, RelatesTheRateToTheCalibrationBesideIt) {
+TEST(Measure, relates_the_rate_to_the_calibration_beside_it) {
     Calibration calibration;
     Task task = short_task();
     task.length.repeats = 1;  // of one, the median of quotients is the quotient of medians
@@ -71,7 +71,7 @@ TEST(Measure, RelatesTheRateToTheCalibrationBesideIt) {
     EXPECT_DOUBLE_EQ(row->relative_rate, row->particle_iterations_per_second() / row->calibration_rate);
 }
 
-TEST(Measure, StagesMakeUpTheStep) {
+TEST(Measure, stages_make_up_the_step) {
     Calibration calibration;
     Task task = short_task();
     task.length.repeats = 1;  // medians of several need not add up
@@ -82,7 +82,7 @@ TEST(Measure, StagesMakeUpTheStep) {
     EXPECT_LT(stages, 1.5 * row->step_seconds);
 }
 
-TEST(Measure, HashHangsOnTheWorkAndNotOnTheThreads) {
+TEST(Measure, hash_hangs_on_the_work_and_not_on_the_threads) {
     Calibration calibration;
     const Start start = small_slab();
     const auto hash_of = [&](const Task& task) { return measure(start, task, calibration)->hash; };
@@ -98,7 +98,7 @@ TEST(Measure, HashHangsOnTheWorkAndNotOnTheThreads) {
               hash_of(short_task(params::InternalFriction::pair)));
 }
 
-TEST(Measure, AStepThatCannotBeTrustedIsAnError) {
+TEST(Measure, a_step_that_cannot_be_trusted_is_an_error) {
     Calibration calibration;
     Start start = small_slab();
     start.model.solver.compression_limit = -1;
@@ -107,25 +107,25 @@ TEST(Measure, AStepThatCannotBeTrustedIsAnError) {
     EXPECT_THAT(row.error().message, HasSubstr("scene slab, method stress"));
 }
 
-TEST(Measure, StopsWhenAsked) {
+TEST(Measure, stops_when_asked) {
     Calibration calibration;
     const std::atomic<bool> stop{true};
     EXPECT_FALSE(measure(small_slab(), short_task(), calibration, &stop));
 }
 
-TEST(Measure, LargerScenesTakeFewerSteps) {
+TEST(Measure, larger_scenes_take_fewer_steps) {
     EXPECT_GT(usual_steps(5000), usual_steps(75000));
     EXPECT_GE(usual_steps(1000000), 2);
     EXPECT_GE(usual_warm_up(1000000), 1);
 }
 
-TEST(Median, IsTheMiddleOne) {
+TEST(Median, is_the_middle_one) {
     EXPECT_EQ(median({3, 1, 100}), 3);
     EXPECT_EQ(median({4, 1, 2, 100}), 3);
     EXPECT_EQ(median({}), 0);
 }
 
-TEST(Calibration, MeasuresAndDoesItsWork) {
+TEST(Calibration, measures_and_does_its_work) {
     Calibration calibration;
     EXPECT_GT(calibration.measure(), 1e4);
     const double total = calibration.total();
@@ -152,7 +152,7 @@ Row sample_row() {
     return row;
 }
 
-TEST(Table, ShowsRatesAndShares) {
+TEST(Table, shows_rates_and_shares) {
     const std::string text = table_text({sample_row()});
     for (const char* part :
          {"slab", "pair", "500.0", "2.00", "AVX2", "adaptive", "0.1250", "0000000000000abc", "50.0"}) {
@@ -161,7 +161,7 @@ TEST(Table, ShowsRatesAndShares) {
     EXPECT_THAT(table_text({}), HasSubstr("nothing"));
 }
 
-TEST(Figure, DrawsALinePerSceneMethodAndThreads) {
+TEST(Figure, draws_a_line_per_scene_method_and_threads) {
     Row small = sample_row(), large = sample_row(), other = sample_row();
     large.particles = 4 * small.particles;
     large.step_seconds = 4 * small.step_seconds;  // the same rate
@@ -178,7 +178,7 @@ TEST(Figure, DrawsALinePerSceneMethodAndThreads) {
     EXPECT_EQ(std::distance(std::sregex_iterator(svg.begin(), svg.end(), mark), std::sregex_iterator()), 3);
 }
 
-TEST(Table, JsonHasWhatScriptsRead) {
+TEST(Table, json_has_what_scripts_read) {
     const auto list = nlohmann::json::parse(table_json({sample_row(), sample_row()}));
     ASSERT_EQ(list.size(), 2U);
     const auto& row = list[0];

@@ -22,7 +22,7 @@ class Scenes : public testing::TestWithParam<std::string> {
     test::TemporaryFolder folder_;
 };
 
-TEST_P(Scenes, HasAboutAsManyParticlesAsAskedFor) {
+TEST_P(Scenes, has_about_as_many_particles_as_asked_for) {
     for (const int particles : {min_particles, 5000, 20000, 75000}) {
         const Result<Start> start = make(particles);
         ASSERT_TRUE(start) << start.error().message;
@@ -31,7 +31,7 @@ TEST_P(Scenes, HasAboutAsManyParticlesAsAskedFor) {
     }
 }
 
-TEST_P(Scenes, HasAllThatARunHas) {
+TEST_P(Scenes, has_all_that_a_run_has) {
     const Result<Start> start = make(5000);
     ASSERT_TRUE(start) << start.error().message;
     EXPECT_EQ(start->scene, GetParam());
@@ -43,7 +43,7 @@ TEST_P(Scenes, HasAllThatARunHas) {
     EXPECT_FALSE(start->model.solver.time_step) << "docs and table say that the step is adaptive";
 }
 
-TEST_P(Scenes, DebrisLiesFreelyOnKnownGroundUnderItsOwnWeight) {
+TEST_P(Scenes, debris_lies_freely_on_known_ground_under_its_own_weight) {
     const Result<Start> start = make(5000);
     ASSERT_TRUE(start) << start.error().message;
     const sim::State& state = start->state;
@@ -60,7 +60,7 @@ TEST_P(Scenes, DebrisLiesFreelyOnKnownGroundUnderItsOwnWeight) {
 
 INSTANTIATE_TEST_SUITE_P(All, Scenes, testing::ValuesIn(scene_names()));
 
-TEST(SlabScene, SlidesDownItsSlope) {
+TEST(SlabScene, slides_down_its_slope) {
     const Result<Start> start = make_start("slab", 5000, "");
     ASSERT_TRUE(start);
     const LocalPoint v = start->state.velocity.at(0);
@@ -68,13 +68,13 @@ TEST(SlabScene, SlidesDownItsSlope) {
     EXPECT_NEAR(v.z / v.x, -std::tan(25 * M_PI / 180), 1e-3);
 }
 
-TEST(SlabScene, NeedsNoFiles) {
+TEST(SlabScene, needs_no_files) {
     EXPECT_TRUE(make_start("slab", 500, "/no/such/scene.toml"));
     EXPECT_TRUE(make_start("column", 500, "/no/such/scene.toml"));
     EXPECT_FALSE(make_start("sham_tseng", 500, "/no/such/scene.toml"));
 }
 
-TEST(UnknownScene, IsRefusedByName) {
+TEST(UnknownScene, is_refused_by_name) {
     const Result<Start> start = make_start("slap", 500, "");
     ASSERT_FALSE(start);
     EXPECT_THAT(start.error().message, testing::HasSubstr("slap"));

@@ -19,7 +19,7 @@ namespace {
 using testing::Contains;
 using testing::HasSubstr;
 
-TEST(Calibration, ASharesValueHasThatShareBelowIt) {
+TEST(Calibration, a_shares_value_has_that_share_below_it) {
     for (const char* text : {"0.1:0.6", "log:0.01:1", "normal:3:0.5", "triangular:0:0.2:1"}) {
         const auto distribution = stats::parse_distribution(text);
         ASSERT_TRUE(distribution);
@@ -60,13 +60,13 @@ class CalibrationTest : public scene::SceneFolder {
     Calibration made;
 };
 
-TEST_F(CalibrationTest, KnowsWhatStandsForNoPrediction) {
+TEST_F(CalibrationTest, knows_what_stands_for_no_prediction) {
     ASSERT_EQ(made.observed.size(), 2u);
     EXPECT_EQ(made.observed[0].unreached, 0);   // no front, no velocity
     EXPECT_EQ(made.observed[1].unreached, 30);  // it had not come when the run ended
 }
 
-TEST_F(CalibrationTest, WarnsOfWhatIsNotKnown) {
+TEST_F(CalibrationTest, warns_of_what_is_not_known) {
     search_with([](const std::vector<double>& p) { return std::vector<double>{16 - 16 * p[0], 12}; });
     const CalibrationSummary summary = summarise(made);
     EXPECT_NEAR(summary.factors[0].median, 0.3, 0.03);
@@ -76,7 +76,7 @@ TEST_F(CalibrationTest, WarnsOfWhatIsNotKnown) {
     EXPECT_THAT(summary.warnings, testing::Not(Contains(HasSubstr("is not explained"))));
 }
 
-TEST_F(CalibrationTest, ExpectsNothingThatCannotBe) {
+TEST_F(CalibrationTest, expects_nothing_that_cannot_be) {
     // Around a velocity of 0.2 m/s the normal error of the emulator reaches far below 0.
     made.observed[0].value = 0.2;
     made.observed[0].uncertainty = 0.1;
@@ -88,7 +88,7 @@ TEST_F(CalibrationTest, ExpectsNothingThatCannotBe) {
     EXPECT_LT(summarise(made).observations[0].low, 0) << "else nothing was to be cut";
 }
 
-TEST_F(CalibrationTest, WarnsWhereNothingFits) {
+TEST_F(CalibrationTest, warns_where_nothing_fits) {
     search_with([](const std::vector<double>& p) { return std::vector<double>{30 - 10 * p[0], 12}; });
     const CalibrationSummary summary = summarise(made);
     EXPECT_GT(summary.observations[0].deviation, 10);
@@ -97,12 +97,12 @@ TEST_F(CalibrationTest, WarnsWhereNothingFits) {
     EXPECT_THAT(summary.warnings, Contains(HasSubstr("material.friction_coefficient is pressed against the high end")));
 }
 
-TEST_F(CalibrationTest, SeesThatTwoFactorsStandForEachOther) {
+TEST_F(CalibrationTest, sees_that_two_factors_stand_for_each_other) {
     search_with([](const std::vector<double>& p) { return std::vector<double>{16 - 8 * (p[0] + p[1]), 12}; });
     EXPECT_THAT(summarise(made).warnings, Contains(HasSubstr("are correlated by -0.")));
 }
 
-TEST_F(CalibrationTest, TheReportShowsWhatResultsHoldAlsoAfterTheyWereWrittenAndRead) {
+TEST_F(CalibrationTest, the_report_shows_what_results_hold_also_after_they_were_written_and_read) {
     search_with([](const std::vector<double>& p) { return std::vector<double>{16 - 16 * p[0], 12}; });
     const auto results = calibration_results(made, summarise(made), misfit_map(made));
     EXPECT_EQ(results["format"], "talus calibration");
@@ -115,7 +115,7 @@ TEST_F(CalibrationTest, TheReportShowsWhatResultsHoldAlsoAfterTheyWereWrittenAnd
     EXPECT_TRUE(page == calibration_report(nlohmann::ordered_json::parse(results.dump())));
 }
 
-TEST_F(CalibrationTest, TheMapIsLowWhereTheRunsFit) {
+TEST_F(CalibrationTest, the_map_is_low_where_the_runs_fit) {
     search_with([](const std::vector<double>& p) { return std::vector<double>{16 - 16 * p[0], 12}; });
     const MisfitMap map = misfit_map(made);
     ASSERT_EQ(map.misfit.size(), map.cells * map.cells);
@@ -126,7 +126,7 @@ TEST_F(CalibrationTest, TheMapIsLowWhereTheRunsFit) {
     EXPECT_GT(map.misfit[map.cells - 1], 30);
 }
 
-TEST_F(CalibrationTest, SaysAfterEachRoundWhatItKnows) {
+TEST_F(CalibrationTest, says_after_each_round_what_it_knows) {
     made.factors.push_back({"material.rest_density_kgpm3", *stats::parse_distribution("1500:2500")});
     const ForwardModel model = [](const stats::Points& points, SearchPhase) -> Result<std::optional<stats::Points>> {
         stats::Points all;

@@ -51,14 +51,14 @@ ForwardModel model_of(double wobble = 0) {
     };
 }
 
-TEST(Misfit, IsTheSquareOfTheDeviation) {
+TEST(Misfit, is_the_square_of_the_deviation) {
     const ensemble::ObservedValue velocity{"", "", "", 10, 2, Kind::equal, 0};
     EXPECT_DOUBLE_EQ(misfit_of(velocity, 10), 0);
     EXPECT_DOUBLE_EQ(misfit_of(velocity, 14), 4);
     EXPECT_DOUBLE_EQ(misfit_of(velocity, 14, 12), 1);  // what is uncertain weighs less
 }
 
-TEST(Misfit, OfDamageCountsTheWrongSideOnly) {
+TEST(Misfit, of_damage_counts_the_wrong_side_only) {
     const ensemble::ObservedValue damaged{"", "", "", 30, 5, Kind::at_least, 0},
         whole{"", "", "", 30, 5, Kind::below, 0};
     EXPECT_NEAR(misfit_of(damaged, 60), 0, 1e-6);
@@ -70,7 +70,7 @@ TEST(Misfit, OfDamageCountsTheWrongSideOnly) {
     EXPECT_NEAR(misfit_of(damaged, 30 - 5 * 30.001) - misfit_of(damaged, 30 - 5 * 29.999), 0.12, 0.01);
 }
 
-TEST(Misfit, OfPriorsIsMinusTwiceTheLogDensity) {
+TEST(Misfit, of_priors_is_minus_twice_the_log_density) {
     stats::Distribution normal;
     normal.kind = stats::DistributionKind::normal;
     normal.middle = 3;
@@ -89,7 +89,7 @@ std::vector<double> bend_values(const stats::Points& points) {
     return values;
 }
 
-TEST(PredictionEmulator, TellsNothingFromLittle) {
+TEST(PredictionEmulator, tells_nothing_from_little) {
     const stats::Points points = sample_points(stats::DesignKind::latin_hypercube, 40, 2, 1);
     const stats::PredictionEmulator emulator = stats::PredictionEmulator::fit(points, bend_values(points), 0);
     EXPECT_GT(emulator.reached_at({0.2, 0.5}), 0.95);
@@ -104,7 +104,7 @@ TEST(PredictionEmulator, TellsNothingFromLittle) {
     EXPECT_LT(fit.emulator_share({0.2, 0.5}), 0.7);
 }
 
-TEST(PredictionEmulator, DoesWithoutValuesOrWithoutGaps) {
+TEST(PredictionEmulator, does_without_values_or_without_gaps) {
     const stats::Points points = sample_points(stats::DesignKind::latin_hypercube, 10, 2, 1);
     const stats::PredictionEmulator none =
         stats::PredictionEmulator::fit(points, std::vector<double>(10, observe::never), -15);
@@ -117,7 +117,7 @@ TEST(PredictionEmulator, DoesWithoutValuesOrWithoutGaps) {
     EXPECT_TRUE(std::isfinite(fit.log_likelihood({0.5, 0.5})));
 }
 
-TEST(Fit, ExpectsTheImprovementThatDrawsOfTheEmulatorsHave) {
+TEST(Fit, expects_the_improvement_that_draws_of_the_emulators_have) {
     const stats::Points points = sample_points(stats::DesignKind::latin_hypercube, 8, 2, 1);
     std::vector<double> first, second;
     for (const auto& p : points) {
@@ -146,7 +146,7 @@ TEST(Fit, ExpectsTheImprovementThatDrawsOfTheEmulatorsHave) {
     EXPECT_EQ(fit.expected_improvement(place, 0), 0);  // nothing fits better than perfectly
 }
 
-TEST(Search, FindsWhatMadeTheObservations) {
+TEST(Search, finds_what_made_the_observations) {
     const std::vector<double> truth = {0.4, 0.3};
     const auto found = search(priors, observed_as(slide(truth)), model_of(), {});
     ASSERT_TRUE(found);
@@ -168,7 +168,7 @@ TEST(Search, FindsWhatMadeTheObservations) {
     EXPECT_GE(within, 18);
 }
 
-TEST(Search, ThePosteriorIsThatOfTheModelItself) {
+TEST(Search, the_posterior_is_that_of_the_model_itself) {
     const auto observed = observed_as(slide({0.4, 0.3}));
     const auto found = search(priors, observed, model_of(), {.runs = 60});
     ASSERT_TRUE(found);
@@ -195,7 +195,7 @@ TEST(Search, ThePosteriorIsThatOfTheModelItself) {
     EXPECT_NEAR(found->posterior.quantile(0, 97.5), quantile(0.975), 0.03);
 }
 
-TEST(Search, ReturnsTheTruthWithinItsIntervalInNineOfTenSeeds) {
+TEST(Search, returns_the_truth_within_its_interval_in_nine_of_ten_seeds) {
     constexpr std::size_t seeds = 20;
     std::size_t returned = 0;
     double width = 0;
@@ -232,7 +232,7 @@ ForwardModel fast_model(std::size_t* made = nullptr) {
     };
 }
 
-TEST(SearchWithTwoModels, ThePosteriorIsThatOfTheSlowModelWithATenthOfItsRuns) {
+TEST(SearchWithTwoModels, the_posterior_is_that_of_the_slow_model_with_a_tenth_of_its_runs) {
     const auto observed = observed_as(slide({0.4, 0.3}));
     const auto full = search(priors, observed, model_of(), {.runs = 60});
     std::size_t fast_made = 0;
@@ -250,7 +250,7 @@ TEST(SearchWithTwoModels, ThePosteriorIsThatOfTheSlowModelWithATenthOfItsRuns) {
     EXPECT_GT(std::abs(fast->posterior.quantile(0, 50) - full->posterior.quantile(0, 50)), 0.05);
 }
 
-TEST(SearchWithTwoModels, EveryRunIsAtAPlaceOfTheFastModel) {
+TEST(SearchWithTwoModels, every_run_is_at_a_place_of_the_fast_model) {
     const auto found =
         search(priors, observed_as(slide({0.4, 0.3})), model_of(), {.runs = 8, .fast_runs = 40}, {}, fast_model());
     ASSERT_TRUE(found);
@@ -262,7 +262,7 @@ TEST(SearchWithTwoModels, EveryRunIsAtAPlaceOfTheFastModel) {
     EXPECT_LT(found->runs[*found->best].misfit, 1);
 }
 
-TEST(SearchWithTwoModels, ReturnsTheTruthWithinItsInterval) {
+TEST(SearchWithTwoModels, returns_the_truth_within_its_interval) {
     constexpr std::size_t seeds = 10;
     std::size_t returned = 0;
     double width = 0;
@@ -286,7 +286,7 @@ TEST(SearchWithTwoModels, ReturnsTheTruthWithinItsInterval) {
     EXPECT_LT(width, 0.75);
 }
 
-TEST(SearchWithTwoModels, GoesOnWhereTheFastModelFailsOrTellsNothing) {
+TEST(SearchWithTwoModels, goes_on_where_the_fast_model_fails_or_tells_nothing) {
     const ForwardModel fails = [](const stats::Points& points, SearchPhase) -> Result<std::optional<stats::Points>> {
         return std::optional(stats::Points(points.size()));
     };
@@ -304,7 +304,7 @@ TEST(SearchWithTwoModels, GoesOnWhereTheFastModelFailsOrTellsNothing) {
     EXPECT_GT(found->posterior.quantile(0, 97.5), 0.4);
 }
 
-TEST(Search, GoesOnAroundRunsThatFail) {
+TEST(Search, goes_on_around_runs_that_fail) {
     const ForwardModel fails = [](const stats::Points& points, SearchPhase) -> Result<std::optional<stats::Points>> {
         stats::Points predicted;
         for (const auto& p : points) predicted.push_back(p[0] < 0.2 ? std::vector<double>{} : slide(p));
@@ -320,7 +320,7 @@ TEST(Search, GoesOnAroundRunsThatFail) {
     EXPECT_FALSE(search(priors, observed_as({1, 1}), broken, {}));
 }
 
-TEST(Search, EndsWhereItIsInterrupted) {
+TEST(Search, ends_where_it_is_interrupted) {
     std::size_t calls = 0;
     const ForwardModel model = [&](const stats::Points& points, SearchPhase) -> Result<std::optional<stats::Points>> {
         if (++calls == 3) return std::optional<stats::Points>();
@@ -332,7 +332,7 @@ TEST(Search, EndsWhereItIsInterrupted) {
     EXPECT_EQ(found->runs.size(), 24u);
 }
 
-TEST(Search, NeverTakesMoreRunsThanAllowed) {
+TEST(Search, never_takes_more_runs_than_allowed) {
     for (const std::size_t runs : {8, 11, 30}) {
         const auto found = search(priors, observed_as(slide({0.4, 0.3})), model_of(0.3), {.runs = runs});
         ASSERT_TRUE(found);

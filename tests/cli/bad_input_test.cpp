@@ -30,7 +30,7 @@ void PrintTo(const BadInput& input, std::ostream* stream) {
 
 class BadInputTest : public testing::TestWithParam<BadInput> {};
 
-TEST_P(BadInputTest, IsSaidInOneLineAndNothingIsLeft) {
+TEST_P(BadInputTest, is_said_in_one_line_and_nothing_is_left) {
     const SmallScene scene;
     GetParam().spoil(scene);
     const auto before = scene.files();
@@ -282,7 +282,7 @@ const std::vector<BadInput> bad_inputs = {
 INSTANTIATE_TEST_SUITE_P(Item, BadInputTest, testing::ValuesIn(bad_inputs),
                          [](const auto& bad) { return std::string(bad.param.name); });
 
-TEST(FullDisk, IsSaidInOneLineAndNothingIsLeft) {
+TEST(FullDisk, is_said_in_one_line_and_nothing_is_left) {
     const SmallScene scene;
     const auto before = scene.files();
     const auto outcome =

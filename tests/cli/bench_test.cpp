@@ -32,7 +32,7 @@ class Bench : public testing::Test {
     TemporaryFolder folder_;
 };
 
-TEST_F(Bench, MeasuresEverySceneMethodSizeAndNumberOfThreads) {
+TEST_F(Bench, measures_every_scene_method_size_and_number_of_threads) {
     std::vector<std::string> arguments = short_;
     arguments[1] = "600,900";
     for (const char* more : {"--threads", "1,2", "--json-file", "b.json"}) arguments.emplace_back(more);
@@ -53,7 +53,7 @@ TEST_F(Bench, MeasuresEverySceneMethodSizeAndNumberOfThreads) {
     EXPECT_EQ(list.back()["scene"], "sham_tseng");
 }
 
-TEST_F(Bench, PrintsItsRowsAsJsonLines) {
+TEST_F(Bench, prints_its_rows_as_json_lines) {
     std::vector<std::string> arguments = short_;
     for (const char* more :
          {"--scene", "slab", "--method", "stress", "--threads", "1,2", "--json", "--json-file", "b.json"}) {
@@ -72,7 +72,7 @@ TEST_F(Bench, PrintsItsRowsAsJsonLines) {
     }
 }
 
-TEST_F(Bench, ChoosesAndRepeatsItself) {
+TEST_F(Bench, chooses_and_repeats_itself) {
     std::vector<std::string> arguments = short_;
     for (const char* more : {"--scene", "column", "--method", "pair", "--iterations", "3", "--backend", "cpu"}) {
         arguments.emplace_back(more);
@@ -95,7 +95,7 @@ TEST_F(Bench, ChoosesAndRepeatsItself) {
     EXPECT_EQ(hashes[0], hashes[1]);
 }
 
-TEST_F(Bench, MeasuresTheCodeOfACardOnTheProcessor) {
+TEST_F(Bench, measures_the_code_of_a_card_on_the_processor) {
     std::vector<std::string> arguments = short_;
     for (const char* more :
          {"--scene", "slab", "--method", "stress", "--backend", "host", "--json-file", "host.json"}) {
@@ -110,7 +110,7 @@ TEST_F(Bench, MeasuresTheCodeOfACardOnTheProcessor) {
     EXPECT_GT(list[0]["bytes_per_particle"], 100);
 }
 
-TEST_F(Bench, BadInputIsRefusedInOneLineBeforeAnythingRuns) {
+TEST_F(Bench, bad_input_is_refused_in_one_line_before_anything_runs) {
     const std::vector<std::pair<std::vector<std::string>, std::vector<std::string>>> refused = {
         {{"--backend", "abacus"}, {"--backend", "abacus", "cpu, cuda, auto, host"}},
         {{"--scene", "slab,wedge"}, {"--scene", "wedge", "slab", "column", "sham_tseng"}},
@@ -137,7 +137,7 @@ TEST_F(Bench, BadInputIsRefusedInOneLineBeforeAnythingRuns) {
     EXPECT_TRUE(std::filesystem::is_empty(folder_.path()));
 }
 
-TEST_F(Bench, AFullDiskLeavesNoPieceOfAFile) {
+TEST_F(Bench, a_full_disk_leaves_no_piece_of_a_file) {
     std::vector<std::string> arguments = short_;
     for (const char* more : {"--scene", "slab", "--json-file", "b.json"}) arguments.emplace_back(more);
     const ProgramOutcome outcome = run(arguments, {.largest_file = 100});
@@ -146,7 +146,7 @@ TEST_F(Bench, AFullDiskLeavesNoPieceOfAFile) {
     EXPECT_FALSE(std::filesystem::exists(folder_.path() / "b.json"));
 }
 
-TEST_F(Bench, AnInterruptShowsWhatWasCompleteAndWritesNothing) {
+TEST_F(Bench, an_interrupt_shows_what_was_complete_and_writes_nothing) {
     ProgramOptions options;
     options.wait_for = "row 2 of";
     options.while_running = [](int process) { kill(process, SIGINT); };
@@ -158,7 +158,7 @@ TEST_F(Bench, AnInterruptShowsWhatWasCompleteAndWritesNothing) {
     EXPECT_FALSE(std::filesystem::exists(folder_.path() / "b.json"));
 }
 
-TEST_F(Bench, HelpTeaches) {
+TEST_F(Bench, help_teaches) {
     const ProgramOutcome outcome = run({"--help"});
     EXPECT_EQ(outcome.exit_code, 0);
     for (const char* part :

@@ -36,7 +36,7 @@ class FlowingScene : public SmallScene {
     }
 };
 
-TEST(Calibrate, WritesWhatItFoundAndASceneThatRunsIt) {
+TEST(Calibrate, writes_what_it_found_and_a_scene_that_runs_it) {
     const FlowingScene scene;
     const ProgramOptions here{.folder = scene.folder()};
     const auto outcome = run_program(calibrate_command("result", {"--json"}), here);
@@ -63,7 +63,7 @@ TEST(Calibrate, WritesWhatItFoundAndASceneThatRunsIt) {
     EXPECT_EQ(manifest.at("result_hash"), event.at("best_hash"));
 }
 
-TEST(Calibrate, RecoversTheFrictionOfARunOfTheDepthAveragedModel) {
+TEST(Calibrate, recovers_the_friction_of_a_run_of_the_depth_averaged_model) {
     const FlowingScene scene;
     const ProgramOptions here{.folder = scene.folder()};
     scene.replace("[solver]\n", "[solver]\nmodel = \"depth_averaged\"\ngrid_cell_m = 1.25\n");
@@ -86,7 +86,7 @@ TEST(Calibrate, RecoversTheFrictionOfARunOfTheDepthAveragedModel) {
 }
 
 /// Where debris started follows from when it came to two places, even if the drawing is 9 m off.
-TEST(Calibrate, RecoversHowFarTheReleaseWasMoved) {
+TEST(Calibrate, recovers_how_far_the_release_was_moved) {
     const FlowingScene scene;
     const ProgramOptions here{.folder = scene.folder()};
     // A path of its own: one that is traced would begin at the crown, wherever that is.
@@ -121,7 +121,7 @@ TEST(Calibrate, RecoversHowFarTheReleaseWasMoved) {
     EXPECT_LT(shift.at("interval_95")[1].get<double>() - shift.at("interval_95")[0].get<double>(), 3);
 }
 
-TEST(Calibrate, WithoutACompleteRunTheExitCodeIsThree) {
+TEST(Calibrate, without_a_complete_run_the_exit_code_is_three) {
     const FlowingScene scene;
     const std::vector<std::string> failing = {"--quiet", "--set", "solver.displacement_limit=0.001", "--set",
                                               "solver.smallest_time_step_s=0.01"};
@@ -132,7 +132,7 @@ TEST(Calibrate, WithoutACompleteRunTheExitCodeIsThree) {
     }
 }
 
-TEST(Calibrate, AnInterruptedOneGoesOnToTheSameResult) {
+TEST(Calibrate, an_interrupted_one_goes_on_to_the_same_result) {
     const FlowingScene scene;
     const ProgramOptions here{.folder = scene.folder()};
     ASSERT_EQ(run_program(calibrate_command("whole", {"--quiet"}, "14"), here).exit_code, 0);
@@ -149,7 +149,7 @@ TEST(Calibrate, AnInterruptedOneGoesOnToTheSameResult) {
     }
 }
 
-TEST(Calibrate, TriesItselfOnKnownValues) {
+TEST(Calibrate, tries_itself_on_known_values) {
     const FlowingScene scene;
     const ProgramOptions here{.folder = scene.folder()};
     const auto outcome = run_program(calibrate_command("tried", {"--recover", "2", "--json"}), here);
@@ -160,7 +160,7 @@ TEST(Calibrate, TriesItselfOnKnownValues) {
     EXPECT_THAT(read_text(scene.folder() / "tried/recovery.csv"), HasSubstr("seed,factor,truth,median"));
 }
 
-TEST(Calibrate, BadInputIsOneLineAndLeavesNothing) {
+TEST(Calibrate, bad_input_is_one_line_and_leaves_nothing) {
     const SmallScene scene;
     const auto before = scene.files();
     const auto expect = [&](const std::vector<std::string>& arguments, const std::string& part) {
@@ -185,7 +185,7 @@ TEST(Calibrate, BadInputIsOneLineAndLeavesNothing) {
     EXPECT_EQ(scene.files(), before);
 }
 
-TEST(Calibrate, SearchesWithTheFasterModelAndConfirmsWithParticles) {
+TEST(Calibrate, searches_with_the_faster_model_and_confirms_with_particles) {
     const FlowingScene scene;
     const ProgramOptions here{.folder = scene.folder()};
     const std::vector<std::string> two = {"--search-with", "depth_averaged",        "--fast-runs", "12",
@@ -233,7 +233,7 @@ TEST(Calibrate, SearchesWithTheFasterModelAndConfirmsWithParticles) {
     EXPECT_THAT(other.error, HasSubstr("holds another ensemble"));
 }
 
-TEST(Calibrate, SaysWhyItCannotSearchWithTwoModels) {
+TEST(Calibrate, says_why_it_cannot_search_with_two_models) {
     const FlowingScene scene;
     const auto refused = [&](const std::vector<std::string>& more, const std::string& runs) {
         const auto outcome = run_program(calibrate_command("none", more, runs), {.folder = scene.folder()});

@@ -15,7 +15,7 @@ namespace {
 namespace fs = std::filesystem;
 using testing::HasSubstr;
 
-TEST(Compare, RunsBothModelsOfTheBuiltInSceneAndSaysWhereTheyPart) {
+TEST(Compare, runs_both_models_of_the_built_in_scene_and_says_where_they_part) {
     const TemporaryFolder folder;
     const auto outcome = run_program({"compare", "-o", "both", "--set", "solver.target_particle_count=500", "--set",
                                       "solver.end_time_s=30", "--set", "solver.grid_cell_m=2.5"},
@@ -51,7 +51,7 @@ TEST(Compare, RunsBothModelsOfTheBuiltInSceneAndSaysWhereTheyPart) {
     EXPECT_EQ(page.find("{{"), std::string::npos);
 }
 
-TEST(Compare, RefusesASceneThatTheDepthAveragedModelCannotHave) {
+TEST(Compare, refuses_a_scene_that_the_depth_averaged_model_cannot_have) {
     const SmallScene scene;
     scene.write(read_text(scene.scene_file()) +
                 "[[barrier]]\nname = \"net\"\nline_m = [[824100, 825080], [824100, 825120]]\nheight_m = "
@@ -62,7 +62,7 @@ TEST(Compare, RefusesASceneThatTheDepthAveragedModelCannotHave) {
     EXPECT_FALSE(fs::exists(scene.folder() / "talus_out"));
 }
 
-TEST(Compare, PutsTheGaugesOfBothModelsSideBySideAndLeavesOutAZoom) {
+TEST(Compare, puts_the_gauges_of_both_models_side_by_side_and_leaves_out_a_zoom) {
     const SmallScene scene;
     scene.replace("end_time_s = 1\n", "end_time_s = 8\n");
     scene.write(read_text(scene.scene_file()) +
@@ -90,7 +90,7 @@ TEST(Compare, PutsTheGaugesOfBothModelsSideBySideAndLeavesOutAZoom) {
     EXPECT_NE(read_text(scene.folder() / "both/report.html").find("<h2>Gauges</h2>"), std::string::npos);
 }
 
-TEST(Compare, IgnoresTheModelOfTheScene) {
+TEST(Compare, ignores_the_model_of_the_scene) {
     const SmallScene scene;
     scene.replace("[solver]\n", "[solver]\nmodel = \"depth_averaged\"\n");
     const auto outcome = run_program({"compare", "slope.toml", "--json", "-o", "both"}, {.folder = scene.folder()});

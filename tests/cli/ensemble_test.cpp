@@ -28,7 +28,7 @@ std::vector<std::string> ensemble_command(const std::string& output, const std::
     return arguments;
 }
 
-TEST(Ensemble, ShardsPutTogetherAreTheWholeByteForByte) {
+TEST(Ensemble, shards_put_together_are_the_whole_byte_for_byte) {
     const SmallScene scene;
     const ProgramOptions here{.folder = scene.folder()};
     const auto whole = run_program(ensemble_command("whole"), here);
@@ -46,7 +46,7 @@ TEST(Ensemble, ShardsPutTogetherAreTheWholeByteForByte) {
     }
 }
 
-TEST(Ensemble, MeansOfBothModelsAreThoseOfParticlesWithASmallerError) {
+TEST(Ensemble, means_of_both_models_are_those_of_particles_with_a_smaller_error) {
     const SmallScene scene;
     const ProgramOptions here{.folder = scene.folder()};
     const std::vector<std::string> two = {"--fast-runs", "24", "--set", "solver.grid_cell_m=2.5", "--json"};
@@ -77,7 +77,7 @@ TEST(Ensemble, MeansOfBothModelsAreThoseOfParticlesWithASmallerError) {
     EXPECT_EQ(read_text(scene.folder() / "two/two_models.csv"), table);
 }
 
-TEST(Ensemble, SaysWhyItHasNoFastRuns) {
+TEST(Ensemble, says_why_it_has_no_fast_runs) {
     const SmallScene scene;
     const auto refused = [&](const std::vector<std::string>& more) {
         const auto outcome = run_program(ensemble_command("none", more, "6"), {.folder = scene.folder()});
@@ -92,7 +92,7 @@ TEST(Ensemble, SaysWhyItHasNoFastRuns) {
     EXPECT_FALSE(fs::exists(scene.folder() / "none"));
 }
 
-TEST(Ensemble, RunsTheDepthAveragedModel) {
+TEST(Ensemble, runs_the_depth_averaged_model) {
     const SmallScene scene;
     const ProgramOptions here{.folder = scene.folder()};
     const std::string model = "solver.model=depth_averaged";
@@ -111,7 +111,7 @@ TEST(Ensemble, RunsTheDepthAveragedModel) {
     EXPECT_THAT(cell.error, HasSubstr("solver.grid_cell_m: is refused; maps of all runs need the same cells"));
 }
 
-TEST(Ensemble, CountsAgainWithOtherThresholds) {
+TEST(Ensemble, counts_again_with_other_thresholds) {
     const SmallScene scene;
     const ProgramOptions here{.folder = scene.folder()};
     ASSERT_EQ(run_program(ensemble_command("result", {"--quiet"}), here).exit_code, 0);
@@ -125,7 +125,7 @@ TEST(Ensemble, CountsAgainWithOtherThresholds) {
     EXPECT_FALSE(fs::exists(scene.folder() / "result/probability_depth_0.2m.tif"));  // counted no more
 }
 
-TEST(Ensemble, AnInterruptedOneGoesOn) {
+TEST(Ensemble, an_interrupted_one_goes_on) {
     const SmallScene scene;
     scene.replace("end_time_s = 1", "end_time_s = 6");
     scene.replace("particle_spacing_m = 0.8", "particle_spacing_m = 0.5");
@@ -141,7 +141,7 @@ TEST(Ensemble, AnInterruptedOneGoesOn) {
     EXPECT_TRUE(fs::exists(scene.folder() / "result/report.html"));
 }
 
-TEST(Ensemble, WhicheverFileCannotBeWrittenNothingThatWasFinishedIsLost) {
+TEST(Ensemble, whichever_file_cannot_be_written_nothing_that_was_finished_is_lost) {
     const SmallScene scene;
     const ProgramOptions here{.folder = scene.folder()};
     ASSERT_EQ(run_program(ensemble_command("whole", {"--quiet"}), here).exit_code, 0);
@@ -165,7 +165,7 @@ TEST(Ensemble, WhicheverFileCannotBeWrittenNothingThatWasFinishedIsLost) {
               read_text(scene.folder() / "whole/statistics.json"));
 }
 
-TEST(Ensemble, ADamagedRunIsMadeAgainWithANote) {
+TEST(Ensemble, a_damaged_run_is_made_again_with_a_note) {
     const SmallScene scene;
     const ProgramOptions here{.folder = scene.folder()};
     ASSERT_EQ(run_program(ensemble_command("result", {"--quiet"}), here).exit_code, 0);
@@ -181,7 +181,7 @@ TEST(Ensemble, ADamagedRunIsMadeAgainWithANote) {
     EXPECT_EQ(read_text(scene.folder() / "result/statistics.json"), before);
 }
 
-TEST(Ensemble, BadInputIsOneLineAndLeavesNothing) {
+TEST(Ensemble, bad_input_is_one_line_and_leaves_nothing) {
     const SmallScene scene;
     const auto before = scene.files();
     const auto expect = [&](const std::vector<std::string>& arguments, const std::string& part) {

@@ -23,7 +23,7 @@ nlohmann::json manifest_of(const SmallScene& scene, const std::string& folder) {
     return nlohmann::json::parse(read_text(scene.folder() / folder / "manifest.json"));
 }
 
-TEST(Layers, ChooseTheSpacingAndSayWhatTheyCost) {
+TEST(Layers, choose_the_spacing_and_say_what_they_cost) {
     const SmallScene scene;
     const auto outcome =
         run_program({"run", "slope.toml", "--layers", "1", "-o", "result"}, {.folder = scene.folder()});
@@ -45,7 +45,7 @@ TEST(Layers, ChooseTheSpacingAndSayWhatTheyCost) {
     EXPECT_EQ(manifest_of(scene, "again").at("result_hash"), manifest.at("result_hash"));
 }
 
-TEST(Layers, AreACostEventOfJsonAndNothingOfQuiet) {
+TEST(Layers, are_a_cost_event_of_json_and_nothing_of_quiet) {
     const SmallScene scene;
     scene.replace("particle_spacing_m = 0.8", "target_layers = 1");
     const auto json = run_program({"run", "slope.toml", "--json", "-o", "one"}, {.folder = scene.folder()});
@@ -61,7 +61,7 @@ TEST(Layers, AreACostEventOfJsonAndNothingOfQuiet) {
     EXPECT_EQ(quiet.out + quiet.error, "");
 }
 
-TEST(Layers, OfACheckStandWithTheCost) {
+TEST(Layers, of_a_check_stand_with_the_cost) {
     const SmallScene scene;
     const auto outcome = run_program({"scene", "check", "slope.toml", "--layers", "1"}, {.folder = scene.folder()});
     ASSERT_EQ(outcome.exit_code, 0) << outcome.error;
@@ -69,7 +69,7 @@ TEST(Layers, OfACheckStandWithTheCost) {
     EXPECT_THAT(outcome.out, HasSubstr("\ncost        1 layers: "));
 }
 
-TEST(Layers, InRealTimeAreRecordedAndCanBeRepeated) {
+TEST(Layers, in_real_time_are_recorded_and_can_be_repeated) {
     const SmallScene scene;
     // Six particles a layer, and few in all: any machine is fast enough.
     scene.replace("thickness_m = 0.3", "thickness_m = 8");
@@ -88,7 +88,7 @@ TEST(Layers, InRealTimeAreRecordedAndCanBeRepeated) {
     EXPECT_EQ(manifest_of(scene, "again").at("result_hash"), manifest.at("result_hash"));
 }
 
-TEST(Layers, AreRefusedInOneLine) {
+TEST(Layers, are_refused_in_one_line) {
     const SmallScene scene;
     const auto refusal = [&](const std::vector<std::string>& options, const std::string& command = "run") {
         std::vector<std::string> arguments{command};
@@ -117,7 +117,7 @@ TEST(Layers, AreRefusedInOneLine) {
     EXPECT_THAT(refusal({"--layers", "real-time"}, "ensemble"), HasSubstr("real-time is for a single run"));
 }
 
-TEST(Layers, OfAnEnsembleAreThoseOfEveryRun) {
+TEST(Layers, of_an_ensemble_are_those_of_every_run) {
     const SmallScene scene;
     const auto outcome =
         run_program({"ensemble", "slope.toml", "--layers", "1", "--vary", "material.friction_coefficient=0.2:0.4",

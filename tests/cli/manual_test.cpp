@@ -35,18 +35,18 @@ std::vector<std::string> offered_by_bash(const std::vector<std::string>& words) 
     return answer;
 }
 
-TEST(Completion, OffersCommandsOfCommandsAndTheirOptions) {
+TEST(Completion, offers_commands_of_commands_and_their_options) {
     EXPECT_THAT(offered_by_bash({"talus", "val"}), ElementsAre("validate"));
     EXPECT_THAT(offered_by_bash({"talus", "scene", "ch"}), ElementsAre("check"));
     EXPECT_THAT(offered_by_bash({"talus", "run", "my.toml", "--conv"}), ElementsAre("--convergence"));
     EXPECT_THAT(offered_by_bash({"talus", "scene", "check", "--conv"}), IsEmpty()) << "an option of run";
 }
 
-TEST(Completion, OffersFilesWhereThereIsNoOption) {
+TEST(Completion, offers_files_where_there_is_no_option) {
     EXPECT_THAT(offered_by_bash({"talus", "run", "try"}), ElementsAre("try.sh"));
 }
 
-TEST(Completion, OffersKeysOfTheSceneAfterSetAndVary) {
+TEST(Completion, offers_keys_of_the_scene_after_set_and_vary) {
     EXPECT_THAT(offered_by_bash({"talus", "run", "--set", "material.friction_c"}),
                 ElementsAre("material.friction_coefficient="));
     EXPECT_THAT(offered_by_bash({"talus", "ensemble", "my.toml", "--vary", "release.vol"}),
@@ -56,7 +56,7 @@ TEST(Completion, OffersKeysOfTheSceneAfterSetAndVary) {
     EXPECT_THAT(offered_by_bash({"talus", "run", "--output", "release.vol"}), IsEmpty());
 }
 
-TEST(Completion, OffersTheValuesOfAKeyThatHasAListOfThem) {
+TEST(Completion, offers_the_values_of_a_key_that_has_a_list_of_them) {
     EXPECT_THAT(offered_by_bash({"talus", "run", "--set", "solver.model", "=", "depth"}),
                 ElementsAre("depth_averaged"));
     EXPECT_THAT(offered_by_bash({"talus", "run", "--set", "scene.reconstruction", "="}), ElementsAre("true", "false"));
@@ -66,13 +66,13 @@ TEST(Completion, OffersTheValuesOfAKeyThatHasAListOfThem) {
     EXPECT_THAT(offered_by_bash({"talus", "run", "--set", "material.viscosity", "=", "0"}), IsEmpty());
 }
 
-TEST(Completion, RefusesOtherShells) {
+TEST(Completion, refuses_other_shells) {
     const auto outcome = run_program({"completion", "fish"});
     EXPECT_EQ(outcome.exit_code, 2);
     EXPECT_THAT(outcome.error, HasSubstr("bash,zsh"));
 }
 
-TEST(Manual, HasAPageForEveryCommandWithItsOptions) {
+TEST(Manual, has_a_page_for_every_command_with_its_options) {
     const TemporaryFolder folder;
     ASSERT_EQ(run_program({"manual", "--folder", folder.path().string()}).exit_code, 0);
     for (const char* name : {"talus", "talus-run", "talus-scene", "talus-scene-check", "talus-serve", "talus-manual"}) {
@@ -85,13 +85,13 @@ TEST(Manual, HasAPageForEveryCommandWithItsOptions) {
     EXPECT_THAT(page, Not(HasSubstr("\n...")));  // would be a request of roff
 }
 
-TEST(Manual, RefusesAnUnknownCommandAndNamesTheNearest) {
+TEST(Manual, refuses_an_unknown_command_and_names_the_nearest) {
     const auto outcome = run_program({"manual", "scene", "chek"});
     EXPECT_EQ(outcome.exit_code, 2);
     EXPECT_THAT(outcome.error, AllOf(HasSubstr("chek"), HasSubstr("check")));
 }
 
-TEST(Version, NamesCommitInstructionSetAndBackends) {
+TEST(Version, names_commit_instruction_set_and_backends) {
     for (const char* flag : {"--version", "-V"}) {
         const auto outcome = run_program({flag}, {.environment = {"TALUS_SIMD=SSE4"}});
         EXPECT_EQ(outcome.exit_code, 0);

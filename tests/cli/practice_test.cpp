@@ -107,7 +107,7 @@ class Practice : public testing::Test {
 };
 
 // No speed above free fall, no front beyond the energy line, and a run-out that the grid does not choose.
-TEST_F(Practice, CliffDepthAveraged) {
+TEST_F(Practice, cliff_depth_averaged) {
     use("cliff_depth_averaged");
     if (IsSkipped()) return;
     std::vector<double> run_outs;
@@ -127,7 +127,7 @@ TEST_F(Practice, CliffDepthAveraged) {
 }
 
 // What comes over a dam and what it holds, and a front that goes on where the particles' path ends.
-TEST_F(Practice, DamDepthAveragedZeros) {
+TEST_F(Practice, dam_depth_averaged_zeros) {
     use("dam_depth_averaged_zeros");
     if (IsSkipped()) return;
     const auto compared = talus({"compare", "scene.toml", "-o", "low", "--set", "solver.target_particle_count=700"});
@@ -148,7 +148,7 @@ TEST_F(Practice, DamDepthAveragedZeros) {
 }
 
 // Drop and angles are known also where the toe lies between the last cell centre and the edge of the terrain.
-TEST_F(Practice, DropAfterLeavingTerrain) {
+TEST_F(Practice, drop_after_leaving_terrain) {
     use("drop_nan_after_leaving_terrain");
     if (IsSkipped()) return;
     const auto outcome = run("scene.toml", "result", {"--set", "solver.target_particle_count=700"});
@@ -159,7 +159,7 @@ TEST_F(Practice, DropAfterLeavingTerrain) {
     EXPECT_EQ(text("result/report.html").find("nan degrees"), std::string::npos);
 }
 
-TEST_F(Practice, HillshadeAsTerrain) {
+TEST_F(Practice, hillshade_as_terrain) {
     use("hillshade_as_terrain");
     if (IsSkipped()) return;
     const auto created =
@@ -170,7 +170,7 @@ TEST_F(Practice, HillshadeAsTerrain) {
 }
 
 // Quoted decimal commas, semicolons and UTF-16 are one hydrograph.
-TEST_F(Practice, HydrographQuotedDecimalComma) {
+TEST_F(Practice, hydrograph_quoted_decimal_comma) {
     use("hydrograph_quoted_decimal_comma");
     if (IsSkipped()) return;
     const auto checked = [&](const std::string& table) {
@@ -193,7 +193,7 @@ TEST_F(Practice, HydrographQuotedDecimalComma) {
 }
 
 // A flume has metres of its own, and volumes, lengths and chainages with the digits that it needs.
-TEST_F(Practice, LabFlumeLocalSystem) {
+TEST_F(Practice, lab_flume_local_system) {
     use("lab_flume_local_system");
     if (IsSkipped()) return;
     const auto create = [&](const std::string& terrain, const std::string& release, const Arguments& options = {}) {
@@ -218,7 +218,7 @@ TEST_F(Practice, LabFlumeLocalSystem) {
 }
 
 // The name of a .dbf in Latin-1 is UTF-8 in every output.
-TEST_F(Practice, Latin1DbfNames) {
+TEST_F(Practice, latin1_dbf_names) {
     use("latin1_dbf_names");
     if (IsSkipped()) return;
     (void)run("scene.toml", "result", {"--set", "solver.target_particle_count=500"});
@@ -239,7 +239,7 @@ TEST_F(Practice, Latin1DbfNames) {
 }
 
 // A file of two dams is two barriers.
-TEST_F(Practice, LineFilesAllFeatures) {
+TEST_F(Practice, line_files_all_features) {
     use("line_files_first_feature_only");
     if (IsSkipped()) return;
     const auto checked = talus({"scene", "check", "dams.toml"});
@@ -250,7 +250,7 @@ TEST_F(Practice, LineFilesAllFeatures) {
     EXPECT_THAT(texts("result/buildings.csv", "name"), ElementsAre("dams upper", "dams lower"));
 }
 
-TEST_F(Practice, NetcdfOfAnObliqueMercatorSystem) {
+TEST_F(Practice, netcdf_of_an_oblique_mercator_system) {
     use("netcdf_oblique_mercator");
     if (IsSkipped()) return;
     (void)run("scene2056.toml", "result");
@@ -262,7 +262,7 @@ TEST_F(Practice, NetcdfOfAnObliqueMercatorSystem) {
 }
 
 // Heights as OpenStreetMap has them: read with their unit, or assumed and counted so.
-TEST_F(Practice, NumbersWithUnitsInText) {
+TEST_F(Practice, numbers_with_units_in_text) {
     use("numbers_with_units_in_text");
     if (IsSkipped()) return;
     (void)run("heights.toml", "result", {"--set", "solver.end_time_s=1"});
@@ -275,7 +275,7 @@ TEST_F(Practice, NumbersWithUnitsInText) {
 }
 
 // Layers, folders, closed lines, archives, a raster far too large, and attributes in capitals.
-TEST_F(Practice, SceneNewDeadEnds) {
+TEST_F(Practice, scene_new_dead_ends) {
     use("scene_new_dead_ends");
     if (IsSkipped()) return;
     const auto create = [&](const Arguments& options) {
@@ -315,7 +315,7 @@ TEST_F(Practice, SceneNewDeadEnds) {
 }
 
 // A 0 that the file does not declare is refused with the command that mends it, and what is left runs as it should.
-TEST_F(Practice, UndeclaredZero) {
+TEST_F(Practice, undeclared_zero) {
     use("undeclared_zero");
     if (IsSkipped()) return;
     const auto refused = talus({"run", "zero.toml", "-o", "zero"});

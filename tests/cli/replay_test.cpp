@@ -36,7 +36,7 @@ json play(const SmallScene& inputs) {
     return (*scenario)->journal_json();
 }
 
-TEST(Replay, FindsTheSameResultAgain) {
+TEST(Replay, finds_the_same_result_again) {
     const SmallScene inputs;
     write_text(inputs.input("session.json"), play(inputs).dump());
     const auto replayed = run_program({"replay", "session.json"}, {.folder = inputs.folder()});
@@ -49,7 +49,7 @@ TEST(Replay, FindsTheSameResultAgain) {
     EXPECT_EQ(quiet.out, "");
 }
 
-TEST(Replay, TakesTheSceneFromABundle) {
+TEST(Replay, takes_the_scene_from_a_bundle) {
     const SmallScene inputs;
     json journal = play(inputs);
     const auto packed = run_program({"bundle", "slope.toml", "-o", "slope.zip"}, {.folder = inputs.folder()});
@@ -71,7 +71,7 @@ TEST(Replay, TakesTheSceneFromABundle) {
     EXPECT_EQ(own.exit_code, 0) << own.error;
 }
 
-TEST(Replay, SaysWhenTheResultIsAnother) {
+TEST(Replay, says_when_the_result_is_another) {
     const SmallScene inputs;
     json journal = play(inputs);
     journal["actions"][1]["step"] = 11;
@@ -82,7 +82,7 @@ TEST(Replay, SaysWhenTheResultIsAnother) {
     EXPECT_EQ(lines_of(replayed.error).size(), 1U);
 }
 
-TEST(Replay, SaysWhichInputHasChanged) {
+TEST(Replay, says_which_input_has_changed) {
     const SmallScene inputs;
     const json journal = play(inputs);
     write_text(inputs.input("session.json"), journal.dump());
@@ -92,7 +92,7 @@ TEST(Replay, SaysWhichInputHasChanged) {
     EXPECT_THAT(replayed.error, HasSubstr("scene has changed since the session"));
 }
 
-TEST(Replay, RefusesWhatItCannotRead) {
+TEST(Replay, refuses_what_it_cannot_read) {
     const SmallScene inputs;
     const auto error_of = [&](const json& journal) {
         write_text(inputs.input("session.json"), journal.dump());

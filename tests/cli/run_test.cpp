@@ -25,7 +25,7 @@ nlohmann::json result_of(const ProgramOutcome& outcome) {
     return lines.empty() ? nlohmann::json() : nlohmann::json::parse(lines.back(), nullptr, false);
 }
 
-TEST(Run, WritesEveryProductAndSaysWhereTheReportIs) {
+TEST(Run, writes_every_product_and_says_where_the_report_is) {
     const SmallScene scene;
     const auto outcome = run_program({"run", "slope.toml"}, {.folder = scene.folder()});
     ASSERT_EQ(outcome.exit_code, 0) << outcome.error;
@@ -47,7 +47,7 @@ TEST(Run, WritesEveryProductAndSaysWhereTheReportIs) {
     EXPECT_THAT(outcome.error, Not(HasSubstr("\r"))) << "no bar where stderr is no terminal";
 }
 
-TEST(Run, OnTheCodeOfACardSaysSoInTheManifest) {
+TEST(Run, on_the_code_of_a_card_says_so_in_the_manifest) {
     const SmallScene scene;
     for (const char* backend : {"host", "auto"}) {
         const auto outcome = run_program({"run", "slope.toml", "--quiet", "--backend", backend, "-o", backend},
@@ -61,7 +61,7 @@ TEST(Run, OnTheCodeOfACardSaysSoInTheManifest) {
     }
 }
 
-TEST(Run, WritesContoursTracksAndDischargeWhereTheyAreAskedFor) {
+TEST(Run, writes_contours_tracks_and_discharge_where_they_are_asked_for) {
     const SmallScene scene;
     scene.replace("end_time_s = 1", "end_time_s = 2");
     scene.replace("[[observation]]",
@@ -84,7 +84,7 @@ TEST(Run, WritesContoursTracksAndDischargeWhereTheyAreAskedFor) {
     EXPECT_GT(manifest["results"]["cross_sections"][0]["passed_m3"], 0);
 }
 
-TEST(Run, QuietPrintsNothing) {
+TEST(Run, quiet_prints_nothing) {
     const SmallScene scene;
     const auto outcome = run_program({"run", "slope.toml", "--quiet", "-o", "result"}, {.folder = scene.folder()});
     EXPECT_EQ(outcome.exit_code, 0);
@@ -93,7 +93,7 @@ TEST(Run, QuietPrintsNothing) {
     EXPECT_TRUE(fs::exists(scene.folder() / "result/report.html"));
 }
 
-TEST(StandardOutput, OnAFullDiskIsAFailure) {
+TEST(StandardOutput, on_a_full_disk_is_a_failure) {
     const SmallScene scene;
     const std::vector<std::vector<std::string>> commands{{"--help"},
                                                          {"--version"},
@@ -114,7 +114,7 @@ TEST(StandardOutput, OnAFullDiskIsAFailure) {
     EXPECT_EQ(quiet.exit_code, 0) << quiet.error;
 }
 
-TEST(StandardOutput, AReaderThatEndsEarlyIsNoFailure) {
+TEST(StandardOutput, a_reader_that_ends_early_is_no_failure) {
     const SmallScene scene;
     const std::string command =
         fmt::format("cd '{}' && {{ '{}' run slope.toml -o result; echo $? >code; }} | head -n 1 >first",
@@ -125,7 +125,7 @@ TEST(StandardOutput, AReaderThatEndsEarlyIsNoFailure) {
     EXPECT_TRUE(std::filesystem::exists(scene.folder() / "result/report.html"));
 }
 
-TEST(StandardOutput, ShowsWhatWouldReverseTheTextOrControlTheTerminal) {
+TEST(StandardOutput, shows_what_would_reverse_the_text_or_control_the_terminal) {
     const SmallScene scene;
     scene.replace("title = \"", "title = \"safe\\u202Efdp \\u001b[31m");
     const auto outcome = run_program({"run", "slope.toml", "-o", "result"}, {.folder = scene.folder()});
@@ -141,7 +141,7 @@ TEST(StandardOutput, ShowsWhatWouldReverseTheTextOrControlTheTerminal) {
     EXPECT_THAT(refused.error, HasSubstr("\\u202Etoml"));
 }
 
-TEST(Environment, UnknownVariablesOfTalusAreRefused) {
+TEST(Environment, unknown_variables_of_talus_are_refused) {
     const SmallScene scene;
     for (const std::string wrong : {"TALUS_SIMDS=AVX2", "TALUS_SIMD=fast"}) {
         const auto outcome =
@@ -151,7 +151,7 @@ TEST(Environment, UnknownVariablesOfTalusAreRefused) {
     }
 }
 
-TEST(Run, JsonIsOneObjectPerLineWithTheResultLast) {
+TEST(Run, json_is_one_object_per_line_with_the_result_last) {
     const SmallScene scene;
     const auto outcome = run_program({"run", "slope.toml", "--json", "-o", "result"}, {.folder = scene.folder()});
     ASSERT_EQ(outcome.exit_code, 0) << outcome.error;
@@ -172,7 +172,7 @@ TEST(Run, JsonIsOneObjectPerLineWithTheResultLast) {
     EXPECT_EQ(result.at("observations").at(0).at("chainage_m"), 5);
 }
 
-TEST(Run, GivesTheSameResultOnOneAndTwoThreads) {
+TEST(Run, gives_the_same_result_on_one_and_two_threads) {
     const SmallScene scene;
     const auto one =
         run_program({"run", "slope.toml", "--json", "-o", "one", "--threads", "1"}, {.folder = scene.folder()});
@@ -185,7 +185,7 @@ TEST(Run, GivesTheSameResultOnOneAndTwoThreads) {
     EXPECT_EQ(result_of(two).at("thread_count"), 2);
 }
 
-TEST(Run, DrawsABarOnATerminalAndRemovesIt) {
+TEST(Run, draws_a_bar_on_a_terminal_and_removes_it) {
     const SmallScene scene;
     const auto outcome =
         run_program({"run", "slope.toml", "-o", "result"},
@@ -198,7 +198,7 @@ TEST(Run, DrawsABarOnATerminalAndRemovesIt) {
     EXPECT_THAT(outcome.error, Not(HasSubstr("\n"))) << "the bar keeps to one line";
 }
 
-TEST(Run, ForceReplacesAnEarlierResultWhole) {
+TEST(Run, force_replaces_an_earlier_result_whole) {
     const SmallScene scene;
     const std::vector<std::string> arguments{"run", "slope.toml", "-o", "result", "--quiet"};
     ASSERT_EQ(run_program(arguments, {.folder = scene.folder()}).exit_code, 0);
@@ -212,7 +212,7 @@ TEST(Run, ForceReplacesAnEarlierResultWhole) {
     EXPECT_TRUE(fs::exists(scene.input("result/report.html")));
 }
 
-TEST(Run, ForceNeverReplacesWhatIsNoResult) {
+TEST(Run, force_never_replaces_what_is_no_result) {
     const SmallScene scene;
     fs::create_directory(scene.folder() / "photos");
     write_text(scene.input("photos/cat.jpg"), "precious");
@@ -222,7 +222,7 @@ TEST(Run, ForceNeverReplacesWhatIsNoResult) {
     EXPECT_EQ(read_text(scene.input("photos/cat.jpg")), "precious");
 }
 
-TEST(Run, SetReplacesAValueOfTheScene) {
+TEST(Run, set_replaces_a_value_of_the_scene) {
     const SmallScene scene;
     const auto outcome = run_program({"run", "slope.toml", "--json", "--set", "solver.end_time_s=0.25", "--set",
                                       "solver.particle_spacing_m=1.5", "-o", "result"},
@@ -232,7 +232,7 @@ TEST(Run, SetReplacesAValueOfTheScene) {
     EXPECT_DOUBLE_EQ(result_of(outcome).at("particle_spacing_m").get<double>(), 1.5);
 }
 
-TEST(Run, DataIsWhatTheSceneCallsTalusData) {
+TEST(Run, data_is_what_the_scene_calls_talus_data) {
     const SmallScene scene;
     fs::create_directory(scene.folder() / "elsewhere");
     fs::rename(scene.input("terrain.tif"), scene.input("elsewhere/terrain.tif"));
@@ -243,7 +243,7 @@ TEST(Run, DataIsWhatTheSceneCallsTalusData) {
     EXPECT_EQ(outcome.exit_code, 0) << outcome.error;
 }
 
-TEST(Run, AFaultWritesWhatThereIsAndSaysWhy) {
+TEST(Run, a_fault_writes_what_there_is_and_says_why) {
     const SmallScene scene;
     const auto outcome =
         run_program({"run", "slope.toml", "-o", "result", "--json", "--set", "solver.largest_time_step_s=0.25", "--set",
@@ -280,7 +280,7 @@ class Interrupted : public testing::Test {
     SmallScene scene_;
 };
 
-TEST_F(Interrupted, ByCtrlCWritesWhatThereIsMarkedPartial) {
+TEST_F(Interrupted, by_ctrl_c_writes_what_there_is_marked_partial) {
     const auto outcome = run([](int process) { kill(process, SIGINT); });
     EXPECT_EQ(outcome.exit_code, 130);
     EXPECT_EQ(result_of(outcome).at("status"), "interrupted");
@@ -288,7 +288,7 @@ TEST_F(Interrupted, ByCtrlCWritesWhatThereIsMarkedPartial) {
     EXPECT_TRUE(fs::exists(scene_.input("result/report.html")));
 }
 
-TEST_F(Interrupted, AfterPlainLinesOfProgressSaysSo) {
+TEST_F(Interrupted, after_plain_lines_of_progress_says_so) {
     const auto outcome = run_program(
         {"run", "slope.toml", "-o", "result"},
         {.folder = scene_.folder(), .while_running = [](int process) { kill(process, SIGINT); }, .wait_for = "left\n"});
@@ -300,13 +300,13 @@ TEST_F(Interrupted, AfterPlainLinesOfProgressSaysSo) {
     EXPECT_THAT(outcome.out, HasSubstr("PARTIAL RESULT"));
 }
 
-TEST_F(Interrupted, ByTerminationToo) {
+TEST_F(Interrupted, by_termination_too) {
     const auto outcome = run([](int process) { kill(process, SIGTERM); });
     EXPECT_EQ(outcome.exit_code, 130);
     EXPECT_TRUE(fs::exists(scene_.input("result/report.html")));
 }
 
-TEST_F(Interrupted, TwiceEndsAtOnceAndLeavesNothing) {
+TEST_F(Interrupted, twice_ends_at_once_and_leaves_nothing) {
     const auto before = scene_.files();
     const auto outcome = run([](int process) {
         // Both are pending when it goes on, so the second arrives before anything can have been written.
@@ -320,7 +320,7 @@ TEST_F(Interrupted, TwiceEndsAtOnceAndLeavesNothing) {
     EXPECT_EQ(scene_.files(), before);
 }
 
-TEST(Run, SaysOnWhichInstructionSetItRan) {
+TEST(Run, says_on_which_instruction_set_it_ran) {
     const SmallScene scene;
     std::vector<std::string> hashes;
     for (const std::string set : {"SSE4", "AVX2"}) {
@@ -334,7 +334,7 @@ TEST(Run, SaysOnWhichInstructionSetItRan) {
     EXPECT_EQ(hashes.at(0), hashes.at(1));
 }
 
-TEST(BuiltinScene, RunsWithoutAnyFileAndLeavesNoTemporaryFolder) {
+TEST(BuiltinScene, runs_without_any_file_and_leaves_no_temporary_folder) {
     const TemporaryFolder folder;
     fs::create_directory(folder.path() / "tmp");
     const auto outcome =
@@ -346,7 +346,7 @@ TEST(BuiltinScene, RunsWithoutAnyFileAndLeavesNoTemporaryFolder) {
     EXPECT_THAT(read_text(folder.path() / "talus_out/sham_tseng/manifest.json"), Not(HasSubstr(folder.file("tmp"))));
 }
 
-TEST(Help, TeachesCommandsExitCodesAndEveryTunable) {
+TEST(Help, teaches_commands_exit_codes_and_every_tunable) {
     const auto general = run_program({"--help"});
     EXPECT_EQ(general.exit_code, 0);
     for (const char* part : {"talus run", "scene new", "scene check", "talus bench", "Exit codes", "130"}) {
@@ -362,7 +362,7 @@ TEST(Help, TeachesCommandsExitCodesAndEveryTunable) {
     EXPECT_EQ(run_program({}).out, general.out) << "without a command the program explains itself";
 }
 
-TEST(Run, SaysWhyTheFrontStaysBehindTheRunOut) {
+TEST(Run, says_why_the_front_stays_behind_the_run_out) {
     const SmallScene scene;
     const auto outcome = run_program({"run", "slope.toml", "--model", "depth_averaged", "-o", "result", "--set",
                                       "solver.end_time_s=6", "--set", "outputs.arrival_depth_m=0.2"},

@@ -14,7 +14,7 @@ namespace {
 namespace fs = std::filesystem;
 using testing::HasSubstr;
 
-TEST(SceneNew, WritesASceneThatChecksAndRuns) {
+TEST(SceneNew, writes_a_scene_that_checks_and_runs) {
     const SmallScene inputs;
     const auto created = run_program({"scene", "new", "--dem", "terrain.tif", "--release", "release.geojson",
                                       "--buildings", "buildings.geojson", "--volume-m3", "120", "-o", "mine"},
@@ -31,7 +31,7 @@ TEST(SceneNew, WritesASceneThatChecksAndRuns) {
     EXPECT_TRUE(fs::exists(inputs.folder() / "talus_out/mine/report.html")) << "named after the scene's folder";
 }
 
-TEST(SceneNew, TakesLayersAPartAndLargerCells) {
+TEST(SceneNew, takes_layers_a_part_and_larger_cells) {
     const SmallScene inputs;
     const auto created = run_program({"scene",
                                       "new",
@@ -67,7 +67,7 @@ TEST(SceneNew, TakesLayersAPartAndLargerCells) {
     EXPECT_FALSE(fs::exists(inputs.folder() / "b"));
 }
 
-TEST(SceneNew, WarnsOfABuildingOnTheRelease) {
+TEST(SceneNew, warns_of_a_building_on_the_release) {
     const SmallScene inputs;
     write_vector(
         inputs.input("hut.geojson"), {},
@@ -85,7 +85,7 @@ TEST(SceneNew, WarnsOfABuildingOnTheRelease) {
     EXPECT_THAT(read_text(inputs.input("result/report.html")), HasSubstr("<b>Warning.</b> building"));
 }
 
-TEST(SceneNew, RefusesAFolderThatIsThere) {
+TEST(SceneNew, refuses_a_folder_that_is_there) {
     const SmallScene inputs;
     fs::create_directory(inputs.folder() / "mine");
     write_text(inputs.input("mine/scene.toml"), "precious");
@@ -97,7 +97,7 @@ TEST(SceneNew, RefusesAFolderThatIsThere) {
     EXPECT_EQ(read_text(inputs.input("mine/scene.toml")), "precious");
 }
 
-TEST(SceneCheck, SaysWhatASceneMeans) {
+TEST(SceneCheck, says_what_a_scene_means) {
     const SmallScene scene;
     const auto outcome = run_program({"scene", "check", "slope.toml"}, {.folder = scene.folder()});
     EXPECT_EQ(outcome.exit_code, 0) << outcome.error;
@@ -105,7 +105,7 @@ TEST(SceneCheck, SaysWhatASceneMeans) {
     for (const char* part : {"EPSG:2326", "scar", "particles", "buildings"}) EXPECT_THAT(outcome.out, HasSubstr(part));
 }
 
-TEST(SceneCheck, RefusesWhatARunWouldRefuse) {
+TEST(SceneCheck, refuses_what_a_run_would_refuse) {
     const SmallScene scene;
     fs::remove(scene.input("terrain.tif"));
     const auto outcome = run_program({"scene", "check", "slope.toml"}, {.folder = scene.folder()});
@@ -114,7 +114,7 @@ TEST(SceneCheck, RefusesWhatARunWouldRefuse) {
     EXPECT_THAT(outcome.error, HasSubstr("terrain.tif"));
 }
 
-TEST(SceneExportBuiltin, WritesASceneThatChecks) {
+TEST(SceneExportBuiltin, writes_a_scene_that_checks) {
     const TemporaryFolder folder;
     const auto exported = run_program({"scene", "export-builtin", "-o", "copy"}, {.folder = folder.path()});
     ASSERT_EQ(exported.exit_code, 0) << exported.error;
@@ -127,7 +127,7 @@ TEST(SceneExportBuiltin, WritesASceneThatChecks) {
               0);
 }
 
-TEST(SceneReference, IsTheFieldTable) {
+TEST(SceneReference, is_the_field_table) {
     EXPECT_EQ(run_program({"scene", "reference", "--markdown"}).out, params::scene_reference_markdown());
     EXPECT_EQ(run_program({"scene", "reference"}).out, params::scene_reference_text());
 }

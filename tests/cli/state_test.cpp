@@ -36,7 +36,7 @@ class StateFile : public testing::Test {
     SmallScene scene;
 };
 
-TEST_F(StateFile, StartsARunThatEndsAsTheWholeOneDoes) {
+TEST_F(StateFile, starts_a_run_that_ends_as_the_whole_one_does) {
     ASSERT_EQ(run({"-o", "whole", "--save-state", "half.state@0.5"}).exit_code, 0);
     const auto rest = run({"-o", "rest", "--from-state", "half.state"});
     ASSERT_EQ(rest.exit_code, 0) << rest.error;
@@ -48,7 +48,7 @@ TEST_F(StateFile, StartsARunThatEndsAsTheWholeOneDoes) {
     }
 }
 
-TEST_F(StateFile, ThatCannotBeUsedIsRefusedInOneSentence) {
+TEST_F(StateFile, that_cannot_be_used_is_refused_in_one_sentence) {
     ASSERT_EQ(run({"-o", "first", "--save-state", "end.state"}).exit_code, 0);
     expect_refused({"--from-state", "slope.toml"}, "slope.toml: is no state of a run");
     expect_refused({"--from-state", "none.state"}, "none.state: cannot be read");
@@ -65,7 +65,7 @@ TEST_F(StateFile, ThatCannotBeUsedIsRefusedInOneSentence) {
     expect_refused({"-o", "first", "--force", "--save-state", "first/x.state"}, "in the result folder");
 }
 
-TEST_F(StateFile, OfTheDepthAveragedModelStartsARunThatEndsAsTheWholeOneDoes) {
+TEST_F(StateFile, of_the_depth_averaged_model_starts_a_run_that_ends_as_the_whole_one_does) {
     ASSERT_EQ(run({"--model", "depth_averaged", "-o", "whole", "--save-state", "half.state@0.5"}).exit_code, 0);
     const auto rest = run({"--model", "depth_averaged", "-o", "rest", "--from-state", "half.state"});
     ASSERT_EQ(rest.exit_code, 0) << rest.error;

@@ -37,7 +37,7 @@ class Validate : public testing::Test {
     TemporaryFolder folder_;
 };
 
-TEST_F(Validate, PrintsATableAndSucceeds) {
+TEST_F(Validate, prints_a_table_and_succeeds) {
     write_case("slab", 0);
     const ProgramOutcome outcome =
         run({"slab", "--json-file", "v.json", "--results", "r.json", "--html", "v.html", "--markdown", "v.md"});
@@ -54,7 +54,7 @@ TEST_F(Validate, PrintsATableAndSucceeds) {
     EXPECT_TRUE(std::filesystem::exists(folder_.path() / "v" / "slab_acceleration.svg"));
 }
 
-TEST_F(Validate, AFailingCaseIsShownAndFails) {
+TEST_F(Validate, a_failing_case_is_shown_and_fails) {
     write_case("good", 0);
     write_case("bad", 10);
     const ProgramOutcome outcome = run({"good", "bad", "--json-file", "v.json"});
@@ -66,7 +66,7 @@ TEST_F(Validate, AFailingCaseIsShownAndFails) {
     EXPECT_EQ(list[1]["pass"], false);
 }
 
-TEST_F(Validate, AnAnnouncedFailureFailsUnlessKnownOnesAreAllowed) {
+TEST_F(Validate, an_announced_failure_fails_unless_known_ones_are_allowed) {
     write_case("bad", 10, "known_failure = \"a slab lies on the ground\"\n");
     const ProgramOutcome strict = run({"bad"});
     EXPECT_EQ(strict.exit_code, case_failed);
@@ -75,7 +75,7 @@ TEST_F(Validate, AnAnnouncedFailureFailsUnlessKnownOnesAreAllowed) {
     EXPECT_EQ(run({"bad", "--known"}).exit_code, 0);
 }
 
-TEST_F(Validate, ListsTheCasesOfTheProgram) {
+TEST_F(Validate, lists_the_cases_of_the_program) {
     const ProgramOutcome outcome = run({"--list"});
     EXPECT_EQ(outcome.exit_code, 0);
     EXPECT_THAT(outcome.out, HasSubstr("sliding_slab"));
@@ -85,7 +85,7 @@ TEST_F(Validate, ListsTheCasesOfTheProgram) {
     EXPECT_EQ(quick.out.find("sham_tseng_real"), std::string::npos);
 }
 
-TEST_F(Validate, BadInputIsRefusedInOneLineBeforeAnythingRuns) {
+TEST_F(Validate, bad_input_is_refused_in_one_line_before_anything_runs) {
     write_case("slab", 0);
     const std::vector<std::pair<std::vector<std::string>, std::string>> refused = {
         {{"sliding_slap"}, "sliding_slab"},
@@ -107,7 +107,7 @@ TEST_F(Validate, BadInputIsRefusedInOneLineBeforeAnythingRuns) {
     }
 }
 
-TEST_F(Validate, HelpNamesItsExitCodes) {
+TEST_F(Validate, help_names_its_exit_codes) {
     const ProgramOutcome outcome = run({"--help"});
     EXPECT_EQ(outcome.exit_code, 0);
     EXPECT_THAT(outcome.out, HasSubstr("4  an expectation does not hold"));

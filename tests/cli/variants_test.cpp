@@ -24,7 +24,7 @@ nlohmann::json last_event(const ProgramOutcome& outcome) {
     return lines.empty() ? nlohmann::json() : nlohmann::json::parse(lines.back(), nullptr, false);
 }
 
-TEST(Convergence, PrintsATableAndWritesItWithTheProducts) {
+TEST(Convergence, prints_a_table_and_writes_it_with_the_products) {
     const SmallScene scene;
     const auto outcome =
         run_program({"run", "slope.toml", "--convergence", "-o", "result"}, {.folder = scene.folder()});
@@ -40,7 +40,7 @@ TEST(Convergence, PrintsATableAndWritesItWithTheProducts) {
     EXPECT_FALSE(fs::exists(scene.folder() / "result/variants.csv"));
 }
 
-TEST(Convergence, LeavesTheResultOfTheSceneAsItIs) {
+TEST(Convergence, leaves_the_result_of_the_scene_as_it_is) {
     const SmallScene scene;
     scene.replace("thickness_m = 0.3", "thickness_m = 2");  // layers that press, so that iterations matter
     const auto alone = run_program({"run", "slope.toml", "--json", "-o", "one"}, {.folder = scene.folder()});
@@ -56,7 +56,7 @@ TEST(Convergence, LeavesTheResultOfTheSceneAsItIs) {
     EXPECT_GT(variants.at(0).at("steps").get<double>(), 1.8 * last_event(compared).at("steps").get<double>());
 }
 
-TEST(Convergence, JsonProgressSaysWhichRunGoesOn) {
+TEST(Convergence, json_progress_says_which_run_goes_on) {
     const SmallScene scene;
     scene.replace("end_time_s = 1", "end_time_s = 2");
     const auto outcome =
@@ -73,7 +73,7 @@ TEST(Convergence, JsonProgressSaysWhichRunGoesOn) {
     EXPECT_GT(last_share, 0);
 }
 
-TEST(Convergence, WorksWithoutObservationsAndWhereDebrisHitsNothing) {
+TEST(Convergence, works_without_observations_and_where_debris_hits_nothing) {
     const SmallScene scene;
     scene.replace("[[observation]]\nchainage_m = 5\nfront_velocity_mps = 3\n", "");
     scene.replace("[buildings]\nfile = \"buildings.geojson\"\n", "");
@@ -85,7 +85,7 @@ TEST(Convergence, WorksWithoutObservationsAndWhereDebrisHitsNothing) {
     EXPECT_THAT(read_text(scene.folder() / "result/report.html"), HasSubstr("The scene has no observation"));
 }
 
-TEST(Vary, RunsOncePerValueOneAtATime) {
+TEST(Vary, runs_once_per_value_one_at_a_time) {
     const SmallScene scene;
     scene.replace("end_time_s = 1", "end_time_s = 3");  // until they are a few particles apart
     const auto outcome = run_program({"run", "slope.toml", "--json", "--vary", "material.friction_coefficient=0.1,0.3",
@@ -134,7 +134,7 @@ set = ["material.friction_coefficient=0.3"]
     SmallScene scene_;
 };
 
-TEST_F(NamedVariants, AreTheSceneWithWhatTheySet) {
+TEST_F(NamedVariants, are_the_scene_with_what_they_set) {
     const auto set_by_hand = hash({"--set", "material.friction_coefficient=0.1", "--set", "material.viscosity=0.2"});
     EXPECT_EQ(hash({"--variant", "slippery"}), set_by_hand);
     EXPECT_NE(hash({}), set_by_hand);
@@ -143,7 +143,7 @@ TEST_F(NamedVariants, AreTheSceneWithWhatTheySet) {
         << "what is set by hand goes before";
 }
 
-TEST_F(NamedVariants, AreAllRunAndComparedInOneFigure) {
+TEST_F(NamedVariants, are_all_run_and_compared_in_one_figure) {
     const auto outcome = run({"--variants", "--vary", "material.viscosity=0.3"});
     ASSERT_EQ(outcome.exit_code, 0) << outcome.error;
     const auto variants = last_event(outcome).at("sensitivity").at("variants");
@@ -160,7 +160,7 @@ TEST_F(NamedVariants, AreAllRunAndComparedInOneFigure) {
     EXPECT_THAT(read_text(scene_.folder() / "result/variants.csv"), HasSubstr("\nslippery,"));
 }
 
-TEST_F(NamedVariants, AreListedWhereANameIsWrong) {
+TEST_F(NamedVariants, are_listed_where_a_name_is_wrong) {
     const auto wrong = run({"--variant", "sliperry"});
     EXPECT_EQ(wrong.exit_code, 2);
     EXPECT_THAT(wrong.error, HasSubstr("--variant sliperry: the scene has no [[variant]] of that name; it has "
@@ -193,7 +193,7 @@ class InterruptedVariants : public testing::Test {
     SmallScene scene_;
 };
 
-TEST_F(InterruptedVariants, KeepTheResultOfTheSceneAndNameWhatIsMissing) {
+TEST_F(InterruptedVariants, keep_the_result_of_the_scene_and_name_what_is_missing) {
     const auto outcome = run({"--json"});
     EXPECT_EQ(outcome.exit_code, 130);
     const auto result = last_event(outcome);
@@ -205,7 +205,7 @@ TEST_F(InterruptedVariants, KeepTheResultOfTheSceneAndNameWhatIsMissing) {
     EXPECT_THAT(read_text(scene_.folder() / "result/variants.csv"), HasSubstr("missing: interrupted before it began"));
 }
 
-TEST_F(InterruptedVariants, AreNamedOnTheTerminalToo) {
+TEST_F(InterruptedVariants, are_named_on_the_terminal_too) {
     const auto outcome = run({});
     EXPECT_EQ(outcome.exit_code, 130);
     EXPECT_THAT(outcome.out, HasSubstr("2 of 2 runs missing"));
@@ -215,7 +215,7 @@ TEST_F(InterruptedVariants, AreNamedOnTheTerminalToo) {
     EXPECT_THAT(lines_of(outcome.error), Contains("interrupted: writing the results so far"));
 }
 
-TEST(Fault, OfTheSceneLeavesItsVariantsOut) {
+TEST(Fault, of_the_scene_leaves_its_variants_out) {
     const SmallScene scene;
     const auto outcome = run_program(
         {"run", "slope.toml", "-o", "result", "--json", "--convergence", "--set", "solver.largest_time_step_s=0.25",
@@ -227,7 +227,7 @@ TEST(Fault, OfTheSceneLeavesItsVariantsOut) {
     EXPECT_TRUE(last_event(outcome).at("convergence").at("converged").is_null());
 }
 
-TEST(Compression, IsReportedWithItsLimitsAndSaidWhenAboveThem) {
+TEST(Compression, is_reported_with_its_limits_and_said_when_above_them) {
     const SmallScene scene;
     const auto good = run_program({"run", "slope.toml", "--json", "-o", "good", "--set", "solver.iteration_count=16"},
                                   {.folder = scene.folder()});

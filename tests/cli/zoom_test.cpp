@@ -29,7 +29,7 @@ class Zoom : public testing::Test {
     SmallScene scene_;
 };
 
-TEST_F(Zoom, OfACommandLineAndOfASceneAreTheSame) {
+TEST_F(Zoom, of_a_command_line_and_of_a_scene_are_the_same) {
     const auto given = run(
         {"run", "slope.toml", "--zoom-polygon", "area.geojson", "--set", "zoom.particle_spacing_m=0.4", "-o", "given"});
     ASSERT_EQ(given.exit_code, 0) << given.error;
@@ -53,7 +53,7 @@ TEST_F(Zoom, OfACommandLineAndOfASceneAreTheSame) {
               manifest.at("result_hash"));
 }
 
-TEST_F(Zoom, IsCheckedWithItsCost) {
+TEST_F(Zoom, is_checked_with_its_cost) {
     const auto checked = run({"scene", "check", "slope.toml", "--set", "zoom.polygon_file=area.geojson"});
     ASSERT_EQ(checked.exit_code, 0) << checked.error;
     EXPECT_THAT(checked.out, ContainsRegex("zoom +60 x 80 m, the event on cells of 2.5 m"));
@@ -66,7 +66,7 @@ TEST_F(Zoom, IsCheckedWithItsCost) {
     EXPECT_THAT(dry.error, HasSubstr("no debris of the depth-averaged model crosses its boundary"));
 }
 
-TEST_F(Zoom, RefusesOptionsThatItCannotBeTogetherWith) {
+TEST_F(Zoom, refuses_options_that_it_cannot_be_together_with) {
     for (const auto& [option, message] : {std::pair{"--layers=2", "--layers is refused beside a zoom"},
                                           std::pair{"--convergence", "--convergence is refused beside a zoom"},
                                           std::pair{"--model=depth_averaged", "is refused beside a zoom"}}) {

@@ -35,7 +35,7 @@ class CsvTables : public testing::Test {
     TemporaryFolder folder_;
 };
 
-TEST_F(CsvTables, QuotedFieldsKeepTheirSeparatorsQuotesAndLines) {
+TEST_F(CsvTables, quoted_fields_keep_their_separators_quotes_and_lines) {
     const CsvTable table = read("t,\"q, wet\",note\r\n1,\"10,5\",\"a \"\"b\"\"\nc\"\r\n\r\n2,,x\r\n");
     EXPECT_THAT(table.columns, ElementsAre("t", "q, wet", "note"));
     ASSERT_EQ(table.rows.size(), 2U);
@@ -46,7 +46,7 @@ TEST_F(CsvTables, QuotedFieldsKeepTheirSeparatorsQuotesAndLines) {
     EXPECT_EQ(table.comma, Comma::either);
 }
 
-TEST_F(CsvTables, SemicolonsAndTabsSeparateToo) {
+TEST_F(CsvTables, semicolons_and_tabs_separate_too) {
     for (const std::string s : {";", "\t"}) {
         const CsvTable table = read("t" + s + "q\n1" + s + "10,5\n");
         EXPECT_THAT(table.columns, ElementsAre("t", "q"));
@@ -56,14 +56,14 @@ TEST_F(CsvTables, SemicolonsAndTabsSeparateToo) {
     }
 }
 
-TEST_F(CsvTables, Utf16AndLatin1AreRead) {
+TEST_F(CsvTables, utf16_and_latin1_are_read) {
     std::string utf16 = "\xFF\xFE";
     for (const char c : std::string("t,q\n1,2\n")) utf16 += {c, '\0'};
     EXPECT_THAT(read(utf16).rows.at(0).fields, ElementsAre("1", "2"));
     EXPECT_THAT(read("t,n\n1,M\xFCller\n").rows.at(0).fields, ElementsAre("1", "Müller"));
 }
 
-TEST_F(CsvTables, MissingFieldsAreEmptyAndPaddingIsNot) {
+TEST_F(CsvTables, missing_fields_are_empty_and_padding_is_not) {
     const CsvTable table = read("a,b,c\n1\n1,2,3,,\n");
     ASSERT_EQ(table.rows.size(), 2U);
     EXPECT_THAT(table.rows[0].fields, ElementsAre("1", "", ""));
@@ -71,7 +71,7 @@ TEST_F(CsvTables, MissingFieldsAreEmptyAndPaddingIsNot) {
     EXPECT_TRUE(read("").columns.empty());
 }
 
-TEST_F(CsvTables, WhatIsNoTableIsRefusedByLine) {
+TEST_F(CsvTables, what_is_no_table_is_refused_by_line) {
     EXPECT_THAT(refusal("a,b\n1,2\n3,10,5\n"),
                 HasSubstr("a.csv:3: has 3 fields, and the first line names 2 columns; a decimal comma needs quotes"));
     EXPECT_THAT(refusal("a,b\n1,\"2\n3,4\n"), EndsWith("a.csv:2: a quote is not closed"));

@@ -19,7 +19,7 @@ std::string refusal(const char* text, Dimension dimension = Dimension::length) {
     return read ? "accepted" : read.error().message;
 }
 
-TEST(Quantity, LengthsAsPeopleWriteThem) {
+TEST(Quantity, lengths_as_people_write_them) {
     for (const auto& [text, metres] : {std::pair{"7", 7.0},
                                        {"12 m", 12.0},
                                        {"9m", 9.0},
@@ -47,7 +47,7 @@ TEST(Quantity, LengthsAsPeopleWriteThem) {
     }
 }
 
-TEST(Quantity, PressuresAsPeopleWriteThem) {
+TEST(Quantity, pressures_as_people_write_them) {
     for (const auto& [text, pascals] : {std::pair{"500", 500.0},
                                         {"500 Pa", 500.0},
                                         {"500 kPa", 5e5},
@@ -60,7 +60,7 @@ TEST(Quantity, PressuresAsPeopleWriteThem) {
     }
 }
 
-TEST(Quantity, WhatIsNotUnderstoodIsRefusedWithItsReason) {
+TEST(Quantity, what_is_not_understood_is_refused_with_its_reason) {
     EXPECT_THAT(refusal("2 storeys"), HasSubstr("after its number comes \"storeys\"; units are m, cm"));
     for (const char* text : {"~8", "yes", "", " ", "m", "<5", "nan", "inf", "-", "e5", "ca. 8"}) {
         EXPECT_EQ(refusal(text), "it does not begin with a number") << text;
@@ -74,7 +74,7 @@ TEST(Quantity, WhatIsNotUnderstoodIsRefusedWithItsReason) {
     EXPECT_EQ(refusal("5 m", Dimension::none), "after its number comes \"m\"");
 }
 
-TEST(Quantity, ACommaIsDecimalWhereSomethingElseSeparatesTheColumns) {
+TEST(Quantity, a_comma_is_decimal_where_something_else_separates_the_columns) {
     const Result<double> read = read_quantity("1,234", Dimension::none, Comma::decimal);
     ASSERT_TRUE(read);
     EXPECT_EQ(*read, 1.234);

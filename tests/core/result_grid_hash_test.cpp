@@ -91,7 +91,7 @@ TEST(StateHash, in_pieces_as_in_one) {
     EXPECT_EQ(whole.value(), pieces.value());
 }
 
-TEST(VisibleText, ShowsWhatChangesTheTextAroundIt) {
+TEST(VisibleText, shows_what_changes_the_text_around_it) {
     EXPECT_EQ(visible("a\u202Eb\u2066\u200F\u061C\u2028"), R"(a\u202Eb\u2066\u200F\u061C\u2028)");
     EXPECT_EQ(visible(std::string("\x1b[31m\x7f\0\u0085", 9)), R"(\u001B[31m\u007F\u0000\u0085)");
     const std::string plain = "Łódź, 深水埗, \u00e9\u2013\u202f1\u2265\n\ttab \xff\xe2\x80";

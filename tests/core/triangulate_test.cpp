@@ -33,25 +33,25 @@ void expect_fills(const Polygon& polygon) {
 
 const Ring l_shape = {{0, 0}, {10, 0}, {10, 4}, {4, 4}, {4, 9}, {0, 9}};
 
-TEST(Triangulate, FillsConcaveOutlinesWhicheverWayTheyRun) {
+TEST(Triangulate, fills_concave_outlines_whichever_way_they_run) {
     expect_fills({l_shape, {}});
     expect_fills({{l_shape.rbegin(), l_shape.rend()}, {}});
     expect_fills(shifted({l_shape, {}}, 824500.25, 825400.5));
     EXPECT_EQ(triangulate({l_shape, {}}).size(), 4U) << "two fewer than corners";
 }
 
-TEST(Triangulate, LeavesHolesOpen) {
+TEST(Triangulate, leaves_holes_open) {
     const Polygon yard{{{0, 0}, {20, 0}, {20, 12}, {0, 12}},
                        {{{2, 2}, {6, 2}, {6, 6}, {2, 6}}, {{9, 3}, {12, 8}, {15, 3}}, {{7, 7}, {8, 10}, {9, 7}}}};
     expect_fills(yard);
     expect_fills(shifted(yard, 2.6e6, 1.2e6));
 }
 
-TEST(Triangulate, TakesCornersInOneLine) {
+TEST(Triangulate, takes_corners_in_one_line) {
     expect_fills({{{0, 0}, {5, 0}, {10, 0}, {10, 5}, {10, 10}, {5, 10}, {0, 10}}, {}});
 }
 
-TEST(Triangulate, EndsOnOutlinesThatAreNone) {
+TEST(Triangulate, ends_on_outlines_that_are_none) {
     EXPECT_TRUE(triangulate({}).empty());
     EXPECT_TRUE(triangulate({{{0, 0}, {1, 1}}, {}}).empty());
     EXPECT_TRUE(triangulate({{{0, 0}, {1, 1}, {2, 2}, {3, 3}}, {}}).empty()) << "all in one line";

@@ -5,14 +5,14 @@
 namespace talus {
 namespace {
 
-TEST(Utf8, ValidTextStaysAsItIs) {
+TEST(Utf8, valid_text_stays_as_it_is) {
     for (const char* text : {"", "plain", "Müllerhütte", "泥石流", "\xF0\x9F\x8F\x94", "\xEF\xBB\xBFmark"}) {
         EXPECT_EQ(invalid_utf8(text), std::string::npos) << text;
         EXPECT_EQ(to_utf8(text), text);
     }
 }
 
-TEST(Utf8, FirstInvalidByteIsFound) {
+TEST(Utf8, first_invalid_byte_is_found) {
     EXPECT_EQ(invalid_utf8("ab\xFC"), 2U);
     EXPECT_EQ(invalid_utf8("\xC3\xBC\x80"), 2U) << "a byte that continues nothing";
     EXPECT_EQ(invalid_utf8("\xC0\xAF"), 0U) << "a longer form of '/'";
@@ -22,18 +22,18 @@ TEST(Utf8, FirstInvalidByteIsFound) {
     EXPECT_EQ(invalid_utf8("a\xE2\x82"), 1U) << "cut short";
 }
 
-TEST(Utf8, OtherTextIsReadAsWindows1252) {
+TEST(Utf8, other_text_is_read_as_windows1252) {
     EXPECT_EQ(to_utf8("M\xFCllerh\xFCtte"), "Müllerhütte");
     EXPECT_EQ(to_utf8("Caf\xE9"), "Café") << "the last byte also begins a character of three bytes";
     EXPECT_EQ(to_utf8("\x80 \x93x\x94"), "€ “x”");
     EXPECT_EQ(to_utf8("a\x81z"), "a\xEF\xBF\xBDz") << "a byte that has no meaning there";
 }
 
-TEST(Utf8, ACharacterCutByTheEndOfItsFieldIsLeftOut) {
+TEST(Utf8, a_character_cut_by_the_end_of_its_field_is_left_out) {
     EXPECT_EQ(to_utf8("Müllerh\xC3"), "Müllerh");
 }
 
-TEST(Utf8, FilesInUtf16) {
+TEST(Utf8, files_in_utf16) {
     const std::string little(
         "\xFF\xFE"
         "a\0\xFC\0\n\0\x3C\xD8\xD4\xDF",

@@ -32,7 +32,7 @@ double total(const Solver& solver, const Entrainment& bed) {
     return solver.volume() + solver.volume_left() - ground * solver.geometry().cell * solver.geometry().cell;
 }
 
-TEST(Entrainment, GrowsASlabByTheLawAndTakesItsSpeed) {
+TEST(Entrainment, grows_a_slab_by_the_law_and_takes_its_speed) {
     const double slope = std::tan(0.5), friction = 0.4, rate = 0.01;
     const Grid<double> ground = plane(500, 0.5, slope);
     Material material;
@@ -64,7 +64,7 @@ TEST(Entrainment, GrowsASlabByTheLawAndTakesItsSpeed) {
     EXPECT_NEAR(momentum / mass / std::cos(0.5), law, 0.02 * law);
 }
 
-TEST(Entrainment, EndsWhereTheBedEnds) {
+TEST(Entrainment, ends_where_the_bed_ends) {
     const Grid<double> ground = plane(200, 0.5, 0.6);
     Solver solver(ground, {}, {}, Edges::continued);
     for (int row = 0; row < 4; ++row) {
@@ -84,7 +84,7 @@ TEST(Entrainment, EndsWhereTheBedEnds) {
     EXPECT_EQ(bed.bed().eroded[200], 0) << "debris never came there";
 }
 
-TEST(Entrainment, ByShearSinksAtItsRateDownToWhatTheStressReaches) {
+TEST(Entrainment, by_shear_sinks_at_its_rate_down_to_what_the_stress_reaches) {
     const Grid<double> ground = plane(200, 1, 0.5);
     Solver solver(ground, {}, {}, Edges::continued);
     for (int row = 0; row < 4; ++row) {

@@ -65,7 +65,7 @@ class EnsembleTest : public scene::SceneFolder {
     std::optional<scene::Scene> scene;
 };
 
-TEST_F(EnsembleTest, IsTheSameSideBySideOneAfterTheOtherAndInShards) {
+TEST_F(EnsembleTest, is_the_same_side_by_side_one_after_the_other_and_in_shards) {
     run("one", {.runs_at_once = 1});
     run("two", {.runs_at_once = 2});
     run("first", {.runs_at_once = 1, .shard = 0, .shard_count = 2});
@@ -78,7 +78,7 @@ TEST_F(EnsembleTest, IsTheSameSideBySideOneAfterTheOtherAndInShards) {
     EXPECT_EQ(hashes({"first", "second"}), expected);
 }
 
-TEST_F(EnsembleTest, GoesOnWhereItStopped) {
+TEST_F(EnsembleTest, goes_on_where_it_stopped) {
     std::atomic<bool> stop = false;
     EnsembleOptions options;
     options.stop_requested = &stop;
@@ -94,7 +94,7 @@ TEST_F(EnsembleTest, GoesOnWhereItStopped) {
     EXPECT_EQ(hashes({"part"}), hashes({"whole"}));
 }
 
-TEST_F(EnsembleTest, DamagedRunsAndThoseOfOthersAreMadeAgain) {
+TEST_F(EnsembleTest, damaged_runs_and_those_of_others_are_made_again) {
     run("mended", {});
     const auto expected = hashes({"mended"});
     const auto file = [&](const std::string& name, int number) {
@@ -121,7 +121,7 @@ TEST_F(EnsembleTest, DamagedRunsAndThoseOfOthersAreMadeAgain) {
     EXPECT_FALSE(std::filesystem::exists(folder / "mended/runs/.000004.run.unfinished-1"));
 }
 
-TEST_F(EnsembleTest, ARunThatFailsIsRecordedAndTheRestGoOn) {
+TEST_F(EnsembleTest, a_run_that_fails_is_recorded_and_the_rest_go_on) {
     plan.factors.clear();
     ASSERT_TRUE(add_factor(plan, "solver.particle_limit=10,100000"));
     const EnsembleOutcome outcome = run("some", {});
@@ -140,7 +140,7 @@ TEST_F(EnsembleTest, ARunThatFailsIsRecordedAndTheRestGoOn) {
     EXPECT_EQ(again.resumed, 3u);
 }
 
-TEST_F(EnsembleTest, AFaultOfARunIsKept) {
+TEST_F(EnsembleTest, a_fault_of_a_run_is_kept) {
     plan.factors.clear();
     source.overrides = {"solver.largest_time_step_s=0.25", "material.viscosity=0", "solver.end_time_s=8"};
     ASSERT_TRUE(add_factor(plan, "solver.smallest_time_step_s=0.25,0.001"));
@@ -157,7 +157,7 @@ TEST_F(EnsembleTest, AFaultOfARunIsKept) {
     }
 }
 
-TEST_F(EnsembleTest, AFolderBelongsToOneEnsembleAndOneProcess) {
+TEST_F(EnsembleTest, a_folder_belongs_to_one_ensemble_and_one_process) {
     {
         const auto held = opened("mine");
         ASSERT_TRUE(held);
@@ -177,7 +177,7 @@ TEST_F(EnsembleTest, AFolderBelongsToOneEnsembleAndOneProcess) {
     EXPECT_FALSE(opened("notes.txt"));
 }
 
-TEST_F(EnsembleTest, AllRunsHaveTheSpacingAndTheMapOfTheScene) {
+TEST_F(EnsembleTest, all_runs_have_the_spacing_and_the_map_of_the_scene) {
     const PlannedRun planned_run = planned().at(0);
     const auto loaded = scene::load_scene(source.file, planned_run.overrides);
     ASSERT_TRUE(loaded) << loaded.error().message;
@@ -187,7 +187,7 @@ TEST_F(EnsembleTest, AllRunsHaveTheSpacingAndTheMapOfTheScene) {
     EXPECT_EQ(fmt::format("{:.9g}", *loaded->spec.releases[0].volume), planned_run.values[1]);
 }
 
-TEST_F(EnsembleTest, AReturnPeriodMakesHazardZones) {
+TEST_F(EnsembleTest, a_return_period_makes_hazard_zones) {
     run("zoned", {.runs_at_once = 2});
     const auto written = [&] {
         const PlannedRuns runs = planned();
@@ -221,7 +221,7 @@ TEST_F(EnsembleTest, AReturnPeriodMakesHazardZones) {
     EXPECT_FALSE(std::filesystem::exists(folder / "zoned/hazard_zones.tif")) << "of an earlier plan";
 }
 
-TEST_F(EnsembleTest, APlanStatesItsReturnPeriod) {
+TEST_F(EnsembleTest, a_plan_states_its_return_period) {
     write("plan.toml", "[ensemble]\nreturn_period_years = 100\n");
     const auto read = read_plan(path("plan.toml"));
     ASSERT_TRUE(read) << read.error().message;
@@ -239,7 +239,7 @@ TEST_F(EnsembleTest, APlanStatesItsReturnPeriod) {
     EXPECT_EQ(restored->return_period, 100);
 }
 
-TEST_F(EnsembleTest, WeightsOfScenariosAreThoseOfTheRuns) {
+TEST_F(EnsembleTest, weights_of_scenarios_are_those_of_the_runs) {
     write(
         "plan.toml",
         "[ensemble]\nruns = 10\n[[factor]]\nkey = \"release.volume_m3\"\nvalues = [400, 900]\nweights = [0.7, 0.3]\n");
@@ -260,7 +260,7 @@ TEST_F(EnsembleTest, WeightsOfScenariosAreThoseOfTheRuns) {
     EXPECT_THAT(read.error().message, HasSubstr("1 weights are given for 2 values"));
 }
 
-TEST_F(EnsembleTest, WritesTheOddsOfEachBuildingWithItsFootprint) {
+TEST_F(EnsembleTest, writes_the_odds_of_each_building_with_its_footprint) {
     run("done", {.runs_at_once = 2});
     const PlannedRuns runs = planned();
     auto reduction = reduce({folder / "done"}, 6, identity(), plan.thresholds);
@@ -296,7 +296,7 @@ TEST_F(EnsembleTest, WritesTheOddsOfEachBuildingWithItsFootprint) {
     }
 }
 
-TEST_F(EnsembleTest, WritesMapsTablesAndAReport) {
+TEST_F(EnsembleTest, writes_maps_tables_and_a_report) {
     run("done", {.runs_at_once = 2});
     const PlannedRuns runs = planned();
     auto reduction = reduce({folder / "done"}, 6, identity(), plan.thresholds);
@@ -330,7 +330,7 @@ TEST_F(EnsembleTest, WritesMapsTablesAndAReport) {
     EXPECT_EQ(page->find("nan"), std::string::npos);
 }
 
-TEST_F(EnsembleTest, BadPlansAreRefusedBeforeAnythingRuns) {
+TEST_F(EnsembleTest, bad_plans_are_refused_before_anything_runs) {
     const auto why = [&](const std::string& factor) {
         EnsemblePlan bad;
         EXPECT_TRUE(add_factor(bad, factor));
@@ -349,7 +349,7 @@ TEST_F(EnsembleTest, BadPlansAreRefusedBeforeAnythingRuns) {
     EXPECT_EQ(*parse_thresholds("0.5,1", "--depth-m"), (std::vector<double>{0.5, 1}));
 }
 
-TEST_F(EnsembleTest, APlanFileSaysTheSame) {
+TEST_F(EnsembleTest, a_plan_file_says_the_same) {
     write("plan.toml",
           "[ensemble]\ndesign = \"saltelli\"\nruns = 40\nseed = 9\n[thresholds]\ndepth_m = [0.2, 2]\n[[factor]]\n"
           "key = \"material.friction_coefficient\"\nlow = 0.2\nhigh = 0.5\n[[factor]]\nkey = \"material.viscosity\"\n"

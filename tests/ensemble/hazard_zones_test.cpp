@@ -9,7 +9,7 @@ namespace {
 
 constexpr int residual = 1, low = 2, medium = 3, high = 4;
 
-TEST(HazardMatrix, IsTheSwissOneForDebrisFlows) {
+TEST(HazardMatrix, is_the_swiss_one_for_debris_flows) {
     const HazardMatrix* matrix = hazard_matrix(params::GuidelineChoice::swiss_debris_flow);
     ASSERT_NE(matrix, nullptr);
     for (const double years : {1.0, 30.0, 100.0, 300.0}) EXPECT_EQ(matrix->zone_of(1, years), high) << years;
@@ -20,7 +20,7 @@ TEST(HazardMatrix, IsTheSwissOneForDebrisFlows) {
     EXPECT_EQ(matrix->zone_of(0, 1000), residual);
 }
 
-TEST(HazardMatrix, HasLowIntensityForFloodsAndNoneWhereNoMatrixIsKnown) {
+TEST(HazardMatrix, has_low_intensity_for_floods_and_none_where_no_matrix_is_known) {
     const HazardMatrix* matrix = hazard_matrix(params::GuidelineChoice::swiss_flood);
     ASSERT_NE(matrix, nullptr);
     EXPECT_EQ(matrix->zone_of(0, 30), medium);
@@ -29,7 +29,7 @@ TEST(HazardMatrix, HasLowIntensityForFloodsAndNoneWhereNoMatrixIsKnown) {
     EXPECT_EQ(hazard_matrix(params::GuidelineChoice::garcia_2003), nullptr);
 }
 
-TEST(HazardZones, TakeTheMostDangerousOfAllIntensities) {
+TEST(HazardZones, take_the_most_dangerous_of_all_intensities) {
     const float none = std::nanf("");
     const HazardMatrix& matrix = *hazard_matrix(params::GuidelineChoice::swiss_debris_flow);
     const GridGeometry cells{0, 0, 1, 4, 1};

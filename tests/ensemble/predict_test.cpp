@@ -32,7 +32,7 @@ class PredictTest : public testing::Test {
     observe::Observation run;
 };
 
-TEST_F(PredictTest, FrontAndArrivalAreThoseOfTheFront) {
+TEST_F(PredictTest, front_and_arrival_are_those_of_the_front) {
     run.front = {{10, 2, 5, 8}, {12, 3, 7, 9}};
     params::ObservationSpec front, debris;
     front.chainage = debris.chainage = 11;
@@ -47,7 +47,7 @@ TEST_F(PredictTest, FrontAndArrivalAreThoseOfTheFront) {
     EXPECT_DOUBLE_EQ(predict_front_chainage(run), 12.5);
 }
 
-TEST_F(PredictTest, RunUpIsTheDepthAtTheMarkOrTheHeightThatIsMissing) {
+TEST_F(PredictTest, run_up_is_the_depth_at_the_mark_or_the_height_that_is_missing) {
     run.maps.peak_depth.at(2, 5) = 1.5F;  // centre (5, 11), ground 2.5 m, surface 4 m
     EXPECT_NEAR(predict_run_up(run, terrain, {5.5, 11.5}), 1.5, 1e-6);
     EXPECT_NEAR(predict_run_up(run, terrain, {11, 11}), 4 - 5.5, 1e-5);  // 1.5 m higher than debris came
@@ -55,21 +55,21 @@ TEST_F(PredictTest, RunUpIsTheDepthAtTheMarkOrTheHeightThatIsMissing) {
     EXPECT_TRUE(std::isnan(predict_run_up(run, terrain, {11, 11}, 5)));  // nothing so near
 }
 
-TEST_F(PredictTest, DepositDepthIsThatOfTheCell) {
+TEST_F(PredictTest, deposit_depth_is_that_of_the_cell) {
     run.maps.deposit_depth.at(3, 4) = 0.75F;
     EXPECT_DOUBLE_EQ(predict_deposit_depth(run, {7.9, 8.1}), 0.75);
     EXPECT_DOUBLE_EQ(predict_deposit_depth(run, {8.1, 8.1}), 0);
     EXPECT_DOUBLE_EQ(predict_deposit_depth(run, {-500, 8.1}), 0);  // beyond the map
 }
 
-TEST_F(PredictTest, PressureIsThatOfTheNamedBuilding) {
+TEST_F(PredictTest, pressure_is_that_of_the_named_building) {
     run.buildings = {{"shed", true, 3, 1, 20e3, 1, 0}, {"house", false, observe::never, 0, 0, 0, 0}};
     EXPECT_DOUBLE_EQ(predict_building_pressure(run, "shed"), 20e3);
     EXPECT_DOUBLE_EQ(predict_building_pressure(run, "house"), 0);
     EXPECT_TRUE(std::isnan(predict_building_pressure(run, "barn")));
 }
 
-TEST_F(PredictTest, OverlapIsSharedOverCoveredArea) {
+TEST_F(PredictTest, overlap_is_shared_over_covered_area) {
     const std::vector<Polygon> outline = {{{{4, 4}, {12, 4}, {12, 8}, {4, 8}}, {}}};  // 4 x 2 cells, 32 m2
     EXPECT_DOUBLE_EQ(predict_outline_overlap(run.maps.deposit_depth, outline, 0.1), 0);
     for (int column = 2; column < 6; ++column) {
@@ -85,7 +85,7 @@ TEST_F(PredictTest, OverlapIsSharedOverCoveredArea) {
     EXPECT_DOUBLE_EQ(predict_outline_overlap(run.maps.deposit_depth, outline, 0.1), 1);
 }
 
-TEST_F(PredictTest, ElevationAgreementComparesDepositMinusErosionOutsideReleases) {
+TEST_F(PredictTest, elevation_agreement_compares_deposit_minus_erosion_outside_releases) {
     Grid<float> observed(run.maps.deposit_depth.geometry, 0);
     observed.at(2, 2) = 1;
     observed.at(3, 2) = -1;
@@ -113,7 +113,7 @@ TEST_F(PredictTest, ElevationAgreementComparesDepositMinusErosionOutsideReleases
     EXPECT_DOUBLE_EQ(agreement(), 1 - 0.5 / 3.5);
 }
 
-TEST(Predict, SuperelevationGivesTheVelocityOfAForcedVortex) {
+TEST(Predict, superelevation_gives_the_velocity_of_a_forced_vortex) {
     params::SuperelevationSpec marks;
     marks.bend_radius = 20;
     marks.width = 10;
@@ -123,7 +123,7 @@ TEST(Predict, SuperelevationGivesTheVelocityOfAForcedVortex) {
     EXPECT_NEAR(superelevation_velocity(marks), std::sqrt(9.81 * 20 * 2 / 10) / 2, 1e-12);
 }
 
-TEST(Predict, DamageCountsOnlyOnTheWrongSide) {
+TEST(Predict, damage_counts_only_on_the_wrong_side) {
     ObservedValue damaged{"", "", "Pa", 15e3, 5e3, ObservedValue::Kind::at_least};
     EXPECT_DOUBLE_EQ(deviation_of(damaged, 100e3), 0);
     EXPECT_DOUBLE_EQ(deviation_of(damaged, 0), -3);
@@ -136,7 +136,7 @@ TEST(Predict, DamageCountsOnlyOnTheWrongSide) {
 
 class ObservedScene : public scene::SceneFolder {};
 
-TEST_F(ObservedScene, HasAValueAndAPredictionForEveryObservation) {
+TEST_F(ObservedScene, has_a_value_and_a_prediction_for_every_observation) {
     write_features("outline.geojson", {rectangle(100, 80, 140, 120)});
     write_features("houses.geojson", {rectangle(150, 95, 160, 105, R"("name": "mill")")});
     write_valley(
@@ -170,7 +170,7 @@ TEST_F(ObservedScene, HasAValueAndAPredictionForEveryObservation) {
     EXPECT_EQ(predicted_values(*scene, observe::Observation()).size(), observed.size());
 }
 
-TEST_F(ObservedScene, ObservationsThatCannotBeAreRefused) {
+TEST_F(ObservedScene, observations_that_cannot_be_are_refused) {
     write_valley("[[arrival]]\nchainage_m = 5000\ntime_s = 10\n");
     EXPECT_THAT(load_error(), HasSubstr("arrival[0].chainage_m = 5000 lies beyond the flow path"));
     write_valley("[[run_up]]\nx_m = 1\ny_m = 2\nheight_m = 3\n");

@@ -60,7 +60,7 @@ class ReductionTest : public scene::SceneFolder {
     }
 };
 
-TEST_F(ReductionTest, CountsRunsAboveThresholdsWhereverTheirMapsLie) {
+TEST_F(ReductionTest, counts_runs_above_thresholds_wherever_their_maps_lie) {
     write_run(0, 0, {1, 2, nan_value});
     write_run(1, 1, {3, 0.4F});
     write_run(2, -1, {0.2F, 0.5F});
@@ -79,7 +79,7 @@ TEST_F(ReductionTest, CountsRunsAboveThresholdsWhereverTheirMapsLie) {
     EXPECT_EQ(pressure.values, (std::vector<float>{0, 0, 2 * third, 0}));
 }
 
-TEST_F(ReductionTest, CountsRunsOfAnIntensityOrAHigherOne) {
+TEST_F(ReductionTest, counts_runs_of_an_intensity_or_a_higher_one) {
     write_run(0, 0, {0.4F, 2, nan_value});  // speeds are twice the depths
     write_run(1, 1, {0.3F});
     write_run(2, -1, {0.2F, 1.5F});
@@ -102,7 +102,7 @@ TEST_F(ReductionTest, CountsRunsOfAnIntensityOrAHigherOne) {
     EXPECT_EQ(flood->intensity[2].values[2], third) << "2 m at 4 m/s, and 0.3 m at 0.6 m/s";
 }
 
-TEST_F(ReductionTest, PercentilesCountRunsThatNeverCameAsNothingAndInArrivalAsNever) {
+TEST_F(ReductionTest, percentiles_count_runs_that_never_came_as_nothing_and_in_arrival_as_never) {
     write_run(0, 0, {1});
     write_run(1, 0, {3});
     write_run(2, 0, {2});
@@ -123,7 +123,7 @@ TEST_F(ReductionTest, PercentilesCountRunsThatNeverCameAsNothingAndInArrivalAsNe
     EXPECT_TRUE(std::isnan(at(0, 95, 3)));  // nobody came there
 }
 
-TEST_F(ReductionTest, HangsNeitherOnTheMemoryNorOnTheFoldersOfTheRuns) {
+TEST_F(ReductionTest, hangs_neither_on_the_memory_nor_on_the_folders_of_the_runs) {
     for (std::size_t run = 0; run < 20; ++run) {
         write_run(run, static_cast<int>(run % 5),
                   {0.1F * static_cast<float>(run), 2.0F - 0.1F * static_cast<float>(run)});
@@ -144,7 +144,7 @@ TEST_F(ReductionTest, HangsNeitherOnTheMemoryNorOnTheFoldersOfTheRuns) {
     }
 }
 
-TEST_F(ReductionTest, BuildingsHaveOdds) {
+TEST_F(ReductionTest, buildings_have_odds) {
     for (std::size_t run = 0; run < 10; ++run)
         write_run(run, 0, {1}, run < 4 ? 10e3 * static_cast<double>(run + 1) : 0);
     const auto r = reduce({folder}, 10, plan, {{1}, {1}, {15, 30}});
@@ -162,7 +162,7 @@ TEST_F(ReductionTest, BuildingsHaveOdds) {
     EXPECT_TRUE(std::isnan(b.median_hit));
 }
 
-TEST_F(ReductionTest, ARecordComesBackAsItWasAndACutOneIsRefused) {
+TEST_F(ReductionTest, a_record_comes_back_as_it_was_and_a_cut_one_is_refused) {
     write_run(2, 3, {1, nan_value, 5});
     const auto record = read_run_record(file(2), plan, 2);
     ASSERT_TRUE(record) << record.error().message;
@@ -180,7 +180,7 @@ TEST_F(ReductionTest, ARecordComesBackAsItWasAndACutOneIsRefused) {
     EXPECT_THAT(cut.error().message, HasSubstr("000002.run: is damaged: its checksum is not that of its contents"));
 }
 
-TEST_F(ReductionTest, EveryBitOfARecordCounts) {
+TEST_F(ReductionTest, every_bit_of_a_record_counts) {
     write_run(2, 3, {1, nan_value, 5}, 20e3);
     const std::string good = test::read_text(file(2));
     ASSERT_TRUE(read_run_record(file(2), plan, 2));
@@ -197,7 +197,7 @@ TEST_F(ReductionTest, EveryBitOfARecordCounts) {
     EXPECT_FALSE(read_run_record(file(2), plan, 2));
 }
 
-TEST_F(ReductionTest, ARecordIsOfOneRunOfOnePlan) {
+TEST_F(ReductionTest, a_record_is_of_one_run_of_one_plan) {
     write_run(2, 3, {1});
     const auto why = [](const Result<RunRecord>& record) {
         return record ? std::string("(accepted)") : record.error().message;
@@ -213,7 +213,7 @@ TEST_F(ReductionTest, ARecordIsOfOneRunOfOnePlan) {
     EXPECT_THAT(r.error().message, HasSubstr("000001.run: is run 2, not run 1; the command that made it makes"));
 }
 
-TEST_F(ReductionTest, PercentilesAreNearestRanks) {
+TEST_F(ReductionTest, percentiles_are_nearest_ranks) {
     std::vector<double> values = {40, 15, 50, 20, 35};
     EXPECT_EQ(percentile(values, 5), 15);
     EXPECT_EQ(percentile(values, 30), 20);

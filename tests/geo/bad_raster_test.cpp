@@ -41,24 +41,24 @@ class BadRaster : public testing::Test {
     TemporaryFolder folder_;
 };
 
-TEST_F(BadRaster, MissingFile) {
+TEST_F(BadRaster, missing_file) {
     EXPECT_THAT(refusal(folder_.file("nowhere.tif")), EndsWith(": no such file"));
 }
 
-TEST_F(BadRaster, Folder) {
+TEST_F(BadRaster, folder) {
     EXPECT_THAT(refusal(folder_.path().string()), HasSubstr("is a folder"));
 }
 
-TEST_F(BadRaster, EmptyFile) {
+TEST_F(BadRaster, empty_file) {
     EXPECT_THAT(refusal(test::write_text(folder_.file("empty.tif"), "")), HasSubstr("is empty (0 bytes)"));
 }
 
-TEST_F(BadRaster, NotARaster) {
+TEST_F(BadRaster, not_a_raster) {
     EXPECT_THAT(refusal(test::write_text(folder_.file("notes.tif"), "dear diary")),
                 HasSubstr("cannot be read as a raster"));
 }
 
-TEST_F(BadRaster, TruncatedAtAnyLength) {
+TEST_F(BadRaster, truncated_at_any_length) {
     for (const char* compression : {"NONE", "DEFLATE"}) {
         const std::string file = write(
             {.columns = 200, .rows = 150, .creation_options = {std::string("COMPRESS=") + compression, "TILED=YES"}},
@@ -74,7 +74,7 @@ TEST_F(BadRaster, TruncatedAtAnyLength) {
     }
 }
 
-TEST_F(BadRaster, TruncatedTextAndRawGrids) {
+TEST_F(BadRaster, truncated_text_and_raw_grids) {
     for (const auto& [driver, name] : {std::pair{"AAIGrid", "dem.asc"}, {"ENVI", "dem.bil"}, {"HFA", "dem.img"}}) {
         const std::string file =
             test::write_raster(folder_.file(name), {.columns = 100, .rows = 100, .driver = driver}, pattern);
@@ -83,7 +83,7 @@ TEST_F(BadRaster, TruncatedTextAndRawGrids) {
     }
 }
 
-TEST_F(BadRaster, BlocksThatWereNeverWrittenAreNodataOr0) {
+TEST_F(BadRaster, blocks_that_were_never_written_are_nodata_or_0) {
     // The directory is there, half of the blocks are not: a sparse raster, or a copy that was stopped.
     for (const bool declared : {true, false}) {
         const std::string file = folder_.file(declared ? "declared.tif" : "sparse.tif");
@@ -115,22 +115,22 @@ TEST_F(BadRaster, BlocksThatWereNeverWrittenAreNodataOr0) {
     }
 }
 
-TEST_F(BadRaster, BandThatDoesNotExist) {
+TEST_F(BadRaster, band_that_does_not_exist) {
     const std::string file = write({.bands = 3});
     EXPECT_THAT(refusal(file, 4), HasSubstr("band = 4 does not exist, the file has bands 1 to 3"));
     EXPECT_THAT(refusal(file, 0), HasSubstr("the file has bands 1 to 3"));
 }
 
-TEST_F(BadRaster, AllNodata) {
+TEST_F(BadRaster, all_nodata) {
     EXPECT_THAT(refusal(write({.nodata = 7, .declare_nodata = true}, [](int, int) { return 7.0; })),
                 HasSubstr("no cell holds data"));
 }
 
-TEST_F(BadRaster, SmallerThanTwoByTwo) {
+TEST_F(BadRaster, smaller_than_two_by_two) {
     EXPECT_THAT(refusal(write({.columns = 1, .rows = 9})), HasSubstr("has 1 x 9 cells, at least 2 x 2 are needed"));
 }
 
-TEST_F(BadRaster, GeographicCrsNamesTheUtmZoneOfItsCentre) {
+TEST_F(BadRaster, geographic_crs_names_the_utm_zone_of_its_centre) {
     const std::string file = write({.x_min = 114.05, .y_min = 22.36, .cell = 0.001, .epsg = 4326});
     EXPECT_THAT(refusal(file), AllOf(HasSubstr("EPSG:4326 (WGS 84) is geographic (degrees)"),
                                      HasSubstr("gdalwarp -t_srs EPSG:32650 -r bilinear -ot Float32 -dstnodata -9999 " +
@@ -150,7 +150,7 @@ std::string write_in_feet(const std::string& file) {
                               [](int column, int row) { return 500 + 20 * (column + row) / 33.0; });
 }
 
-TEST_F(BadRaster, FeetInBothDirectionsAreMendedOneAfterTheOther) {
+TEST_F(BadRaster, feet_in_both_directions_are_mended_one_after_the_other) {
     const std::string file = write_in_feet(folder_.file("feet.tif"));
     EXPECT_THAT(refusal(file), AllOf(HasSubstr("a CRS in metres is needed"),
                                      HasSubstr("gdalwarp -novshift -t_srs EPSG:32613 -r bilinear")));
@@ -168,25 +168,25 @@ TEST_F(BadRaster, FeetInBothDirectionsAreMendedOneAfterTheOther) {
     EXPECT_FALSE(std::isnan(terrain->grid.at(10, 7)));
 }
 
-TEST_F(BadRaster, MissingCrs) {
+TEST_F(BadRaster, missing_crs) {
     const std::string file = write({.epsg = 0});
     EXPECT_THAT(refusal(file), HasSubstr("gdal_edit.py -a_srs EPSG:nnnn " + file));
     const std::string text = test::write_raster(folder_.file("dem.asc"), {.epsg = 0, .driver = "AAIGrid"}, pattern);
     EXPECT_THAT(refusal(text), HasSubstr("gdal_translate -a_srs EPSG:nnnn " + text)) << "cannot be edited in place";
 }
 
-TEST_F(BadRaster, CrsInFeet) {
+TEST_F(BadRaster, crs_in_feet) {
     // NAD83 / California zone 3 in US survey feet, San Francisco.
     const std::string file = write({.x_min = 6000000, .y_min = 2110000, .epsg = 2227});
     EXPECT_THAT(refusal(file), AllOf(HasSubstr("EPSG:2227"), HasSubstr("0.304801 m"), HasSubstr("-t_srs EPSG:32610")));
 }
 
-TEST_F(BadRaster, WebMercatorIsNotTrueToScale) {
+TEST_F(BadRaster, web_mercator_is_not_true_to_scale) {
     const std::string file = write({.x_min = 12696000, .y_min = 2556000, .epsg = 3857});
     EXPECT_THAT(refusal(file), AllOf(HasSubstr("is 0.923 m on the ground here"), HasSubstr("-t_srs EPSG:32650")));
 }
 
-TEST_F(BadRaster, HeightsInFeet) {
+TEST_F(BadRaster, heights_in_feet) {
     for (const char* unit : {"ft", "US survey foot", "Feet"}) {
         const std::string file = write({.unit = unit});
         EXPECT_THAT(refusal(file),
@@ -196,11 +196,11 @@ TEST_F(BadRaster, HeightsInFeet) {
     }
 }
 
-TEST_F(BadRaster, CommandForFeetCountsScaleAndOffset) {
+TEST_F(BadRaster, command_for_feet_counts_scale_and_offset) {
     EXPECT_THAT(refusal(write({.scale = 0.1, .offset = -10, .unit = "ft"})), HasSubstr("--calc='A*0.03048-3.048'"));
 }
 
-TEST_F(BadRaster, HeightsInFeetByTheVerticalCrs) {
+TEST_F(BadRaster, heights_in_feet_by_the_vertical_crs) {
     // UTM 10N with NAVD88 height in US survey feet.
     OGRSpatialReference both;
     both.SetFromUserInput("EPSG:26910+6360");
@@ -211,21 +211,21 @@ TEST_F(BadRaster, HeightsInFeetByTheVerticalCrs) {
     EXPECT_THAT(refusal(file), HasSubstr("values are in US survey foot of 0.30480061 m"));
 }
 
-TEST_F(BadRaster, Rotated) {
+TEST_F(BadRaster, rotated) {
     EXPECT_THAT(refusal(write({.rotation = 1})),
                 AllOf(HasSubstr("the raster is rotated"), HasSubstr("gdalwarp -tr 5.099019514 5.099019514")));
 }
 
-TEST_F(BadRaster, CellsThatAreNotSquare) {
+TEST_F(BadRaster, cells_that_are_not_square) {
     EXPECT_THAT(refusal(write({.cell = 5, .cell_height = 4})),
                 AllOf(HasSubstr("cells are 5 m x 4 m"), HasSubstr("gdalwarp -tr 4 4 ")));
 }
 
-TEST_F(BadRaster, NoPosition) {
+TEST_F(BadRaster, no_position) {
     EXPECT_THAT(refusal(write({.georeferenced = false})), HasSubstr("gdal_translate -a_ullr"));
 }
 
-TEST_F(BadRaster, UndeclaredNodata) {
+TEST_F(BadRaster, undeclared_nodata) {
     for (const double value : {-9999.0, -32768.0, 32767.0, -3.4028234663852886e38}) {
         const std::string file = write({}, [&](int column, int row) { return column == 3 ? value : 40.0 + row; });
         EXPECT_THAT(refusal(file), AllOf(HasSubstr("15 cells hold"), HasSubstr("declared nodata value: none"),
@@ -234,7 +234,7 @@ TEST_F(BadRaster, UndeclaredNodata) {
     }
 }
 
-TEST_F(BadRaster, FileNamesWithBlanksAreQuotedInCommands) {
+TEST_F(BadRaster, file_names_with_blanks_are_quoted_in_commands) {
     const std::string file = test::write_raster(folder_.file("my dem.tif"), {.epsg = 0}, pattern);
     EXPECT_THAT(refusal(file), AllOf(HasSubstr("EPSG:nnnn '" + file + "'"), HasSubstr("terrain.crs = \"local\"")));
 }

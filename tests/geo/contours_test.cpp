@@ -9,7 +9,7 @@
 namespace talus::geo {
 namespace {
 
-TEST(Contours, ContoursOfAPlaneAreStraightEvenlySpacedAndWhole) {
+TEST(Contours, contours_of_a_plane_are_straight_evenly_spaced_and_whole) {
     Grid<float> plane(GridGeometry{1000, 2000, 2, 40, 30});
     for (int r = 0; r < 30; ++r) {
         for (int c = 0; c < 40; ++c) plane.at(c, r) = static_cast<float>(0.5 * plane.geometry.centre(c, r).x);
@@ -25,7 +25,7 @@ TEST(Contours, ContoursOfAPlaneAreStraightEvenlySpacedAndWhole) {
     }
 }
 
-TEST(Contours, AHillHasClosedContours) {
+TEST(Contours, a_hill_has_closed_contours) {
     Grid<float> hill(GridGeometry{0, 0, 1, 41, 41});
     for (int r = 0; r < 41; ++r) {
         for (int c = 0; c < 41; ++c) hill.at(c, r) = static_cast<float>(20 - std::hypot(c - 20, r - 20));
@@ -46,7 +46,7 @@ TEST(Contours, AHillHasClosedContours) {
     EXPECT_NEAR(length, 2 * 3.14159 * 10, 0.5);
 }
 
-TEST(Contours, AtGivenLevelsAreAtThoseAlone) {
+TEST(Contours, at_given_levels_are_at_those_alone) {
     Grid<float> hill(GridGeometry{0, 0, 1, 41, 41});
     for (int r = 0; r < 41; ++r) {
         for (int c = 0; c < 41; ++c) {
@@ -64,7 +64,7 @@ TEST(Contours, AtGivenLevelsAreAtThoseAlone) {
     EXPECT_EQ(lines[1].elevation, 1.1);
 }
 
-TEST(Contours, EndWhereThereIsNoElevation) {
+TEST(Contours, end_where_there_is_no_elevation) {
     Grid<float> plane(GridGeometry{0, 0, 1, 20, 20}, std::numeric_limits<float>::quiet_NaN());
     EXPECT_TRUE(contours(plane, 1).empty());
     for (int r = 0; r < 20; ++r) {

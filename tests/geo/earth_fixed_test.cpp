@@ -17,7 +17,7 @@ Crs crs_of(const char* text) {
     return *crs_from_text(text);
 }
 
-TEST(EarthFixed, PlacesTheCrossingOfEquatorAndCentralMeridian) {
+TEST(EarthFixed, places_the_crossing_of_equator_and_central_meridian) {
     // UTM zone 31: 500 km east is 3 degrees east of Greenwich, at a scale of 0.9996.
     const auto place = earth_fixed(crs_of("EPSG:32631"), {500000, 0, 100});
     ASSERT_TRUE(place) << place.error().message;
@@ -30,7 +30,7 @@ TEST(EarthFixed, PlacesTheCrossingOfEquatorAndCentralMeridian) {
     EXPECT_NEAR(place->east[1], std::cos(longitude) / 0.9996, 1e-4);
 }
 
-TEST(EarthFixed, AxesAreSquareAndRightHandedAnywhere) {
+TEST(EarthFixed, axes_are_square_and_right_handed_anywhere) {
     for (const auto& [crs, x, y] : {std::tuple{"EPSG:2326", 824500.0, 825400.0},  // Hong Kong
                                     {"EPSG:2056", 2600000.0, 1200000.0},          // Bern
                                     {"EPSG:32719", 300000.0, 6200000.0}}) {       // Chile
@@ -51,7 +51,7 @@ TEST(EarthFixed, AxesAreSquareAndRightHandedAnywhere) {
     EXPECT_NEAR(std::asin(bern->up[2]) * 180 / std::acos(-1.0), 46.9511, 2e-4);
 }
 
-TEST(EarthFixed, RefusesASystemThatIsNowhere) {
+TEST(EarthFixed, refuses_a_system_that_is_nowhere) {
     EXPECT_FALSE(earth_fixed(Crs{}, {0, 0, 0}));
 }
 

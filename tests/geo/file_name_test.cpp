@@ -35,7 +35,7 @@ class FileName : public testing::Test {
     test::TemporaryFolder folder_;
 };
 
-TEST_F(FileName, ALayerIsNamedBehindABar) {
+TEST_F(FileName, a_layer_is_named_behind_a_bar) {
     const auto split = split_layer("maps/all.gpkg|layername=release 2024");
     ASSERT_TRUE(split);
     EXPECT_EQ(split->file, "maps/all.gpkg");
@@ -47,7 +47,7 @@ TEST_F(FileName, ALayerIsNamedBehindABar) {
     EXPECT_EQ(split_layer(odd)->file, odd) << "a file whose name holds a bar";
 }
 
-TEST_F(FileName, OneRasterInAnArchiveIsRead) {
+TEST_F(FileName, one_raster_in_an_archive_is_read) {
     const std::string archive =
         zip("dem.ZIP",
             {{"valley/dem.tif", terrain("a.tif")}, {"valley/dem.tif.ovr", terrain("o.tif")}, {"README", {}, "hi"}});
@@ -58,14 +58,14 @@ TEST_F(FileName, OneRasterInAnArchiveIsRead) {
     EXPECT_THAT(refusal(zip("text.zip", {{"README", {}, "hi"}})), HasSubstr("there is no raster in this archive"));
 }
 
-TEST_F(FileName, OfSeveralInAnArchiveOneIsNamed) {
+TEST_F(FileName, of_several_in_an_archive_one_is_named) {
     const std::string archive = zip("dem.zip", {{"a.tif", terrain("a.tif")}, {"b.tif", terrain("b.tif")}});
     EXPECT_THAT(refusal(archive), AllOf(HasSubstr("holds 2 data sets; name one of them: "),
                                         HasSubstr(archive + "/a.tif, " + archive + "/b.tif")));
     EXPECT_EQ(refusal(archive + "/b.tif"), "accepted");
 }
 
-TEST_F(FileName, AVirtualRasterInAnArchiveIsNotRead) {
+TEST_F(FileName, a_virtual_raster_in_an_archive_is_not_read) {
     const std::string vrt =
         "<VRTDataset rasterXSize=\"2\" rasterYSize=\"2\"><VRTRasterBand dataType=\"Byte\" band=\"1\"><SimpleSource>"
         "<SourceFilename>" +
@@ -75,7 +75,7 @@ TEST_F(FileName, AVirtualRasterInAnArchiveIsNotRead) {
     EXPECT_THAT(refusal(archive + "/dem.vrt"), HasSubstr("a file of the format VRT may name other files"));
 }
 
-TEST_F(FileName, AShapefileInAnArchiveIsOneDataSet) {
+TEST_F(FileName, a_shapefile_in_an_archive_is_one_data_set) {
     test::write_vector(file("scar.shp"), {.driver = "ESRI Shapefile", .type = wkbPolygon},
                        {{test::rectangle_wkt(824100, 825600, 824110, 825620)}});
     const std::string archive = zip("scar.zip", {{"scar.shp", file("scar.shp")},
@@ -87,7 +87,7 @@ TEST_F(FileName, AShapefileInAnArchiveIsOneDataSet) {
     EXPECT_EQ(layer->features.size(), 1U);
 }
 
-TEST_F(FileName, ACompressedRasterIsReadAndNothingIsWrittenBesideIt) {
+TEST_F(FileName, a_compressed_raster_is_read_and_nothing_is_written_beside_it) {
     const std::string plain = test::read_text(terrain("dem.tif")), packed = file("dem.tif.gz");
     VSILFILE* out = VSIFOpenL(("/vsigzip/" + packed).c_str(), "wb");
     ASSERT_NE(out, nullptr);
@@ -98,7 +98,7 @@ TEST_F(FileName, ACompressedRasterIsReadAndNothingIsWrittenBesideIt) {
     EXPECT_FALSE(std::filesystem::exists(file("dem.tif.gz.properties")));
 }
 
-TEST_F(FileName, ARasterOfAContainerIsNamedAsALayer) {
+TEST_F(FileName, a_raster_of_a_container_is_named_as_a_layer) {
     const std::string gpkg = file("all.gpkg");
     for (const char* table : {"surface", "ground"}) {
         const GDALDatasetUniquePtr from(GDALDataset::Open(terrain("a.tif").c_str(), GDAL_OF_RASTER));
@@ -116,7 +116,7 @@ TEST_F(FileName, ARasterOfAContainerIsNamedAsALayer) {
     EXPECT_EQ(file_on_disk(gpkg + "|layername=ground"), gpkg);
 }
 
-TEST_F(FileName, ARasterThatIsAloneMayBeNamed) {
+TEST_F(FileName, a_raster_that_is_alone_may_be_named) {
     const std::string alone = terrain("dem.tif");
     EXPECT_EQ(refusal(alone + "|layername=dem"), "accepted");
     EXPECT_THAT(refusal(alone + "|layername=dtm"), EndsWith("has no raster \"dtm\"; it holds one, \"dem\""));

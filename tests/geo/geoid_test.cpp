@@ -55,7 +55,7 @@ class Geoid : public testing::Test {
     test::TemporaryFolder folder_;
 };
 
-TEST_F(Geoid, IsThatOfTheGridThatIsInstalled) {
+TEST_F(Geoid, is_that_of_the_grid_that_is_installed) {
     for (int k = 0; before_ != nullptr && before_[k] != nullptr; ++k) {
         if (std::filesystem::exists(std::filesystem::path(before_[k]) / "us_nga_egm08_25.tif")) {
             GTEST_SKIP() << "this PROJ has the newer file of EGM2008, which it prefers";
@@ -70,13 +70,13 @@ TEST_F(Geoid, IsThatOfTheGridThatIsInstalled) {
     EXPECT_EQ(found->model, "EGM2008");
 }
 
-TEST_F(Geoid, OfALocalSystemIsNotKnown) {
+TEST_F(Geoid, of_a_local_system_is_not_known) {
     write_grid(folder_.file("egm08_25.gtx"));
     look_in(folder_);
     EXPECT_FALSE(geoid_height(Crs::own_metres(), {2, 0.3}));
 }
 
-TEST_F(Geoid, NothingIsFetchedAndTheSettingIsAsBefore) {
+TEST_F(Geoid, nothing_is_fetched_and_the_setting_is_as_before) {
     const int before = OSRGetPROJEnableNetwork();
     (void)geoid_height(*crs_from_text("EPSG:32631"), {500000, 4500000});
     EXPECT_EQ(OSRGetPROJEnableNetwork(), before);

@@ -126,7 +126,7 @@ void expect_hut_and_its_copy(const Result<std::vector<MeshBuilding>>& buildings)
     EXPECT_NEAR(copy.roofs[0].elevation, 60, 1e-9);
 }
 
-TEST_F(Gltf, ANodeWithAMeshIsABuildingWhereverItsBufferIs) {
+TEST_F(Gltf, a_node_with_a_mesh_is_a_building_wherever_its_buffer_is) {
     expect_hut_and_its_copy(read("a.gltf", embedded()));
     EXPECT_TRUE(more_files_.empty());
     write("my box.bin", box());
@@ -135,7 +135,7 @@ TEST_F(Gltf, ANodeWithAMeshIsABuildingWhereverItsBufferIs) {
     expect_hut_and_its_copy(read("c.GLB", container(gltf_house(""), box())));
 }
 
-TEST_F(Gltf, StripsFansAndRotationsAreRead) {
+TEST_F(Gltf, strips_fans_and_rotations_are_read) {
     // A square of 4 m, 3 m above a post at the foot, which only says where the foot is.
     const std::vector<float> corners{0, 3, 0, 4, 3, 0, 0, 3, -4, 4, 3, -4, 0, 0, 0, 1, 0, 0, 0, 0, -1};
     for (const int mode : {4, 5, 6}) {
@@ -172,7 +172,7 @@ TEST_F(Gltf, StripsFansAndRotationsAreRead) {
     }
 }
 
-TEST_F(Gltf, BadFilesAreRefusedWithThePlace) {
+TEST_F(Gltf, bad_files_are_refused_with_the_place) {
     EXPECT_THAT(refusal("a.gltf", "hello"), HasSubstr("a.gltf: is no glTF file"));
     EXPECT_THAT(refusal("a.gltf", "{}"), HasSubstr("is no glTF file: it has no asset.version"));
     EXPECT_THAT(changed(R"("version": "2.0")", R"("version": "1.0")"), HasSubstr("asset.version is \"1.0\""));
@@ -227,7 +227,7 @@ TEST_F(Gltf, BadFilesAreRefusedWithThePlace) {
     EXPECT_THAT(refusal("a.glb", whole.substr(0, 4) + word(1) + whole.substr(8)), HasSubstr("container version 1"));
 }
 
-TEST_F(Gltf, HostileFilesAreRefusedAndNothingElse) {
+TEST_F(Gltf, hostile_files_are_refused_and_nothing_else) {
     // One mesh that thousands of nodes show.
     std::string text = embedded();
     const std::size_t begin = text.find("\"nodes\": [{\"translation\"");

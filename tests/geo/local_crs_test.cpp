@@ -33,7 +33,7 @@ class LocalCoordinates : public testing::Test {
     test::TemporaryFolder folder_;
 };
 
-TEST_F(LocalCoordinates, ATerrainThatStatesNoneIsTakenWhereItIsSaid) {
+TEST_F(LocalCoordinates, a_terrain_that_states_none_is_taken_where_it_is_said) {
     const std::string file = flume("");
     const auto refused = read_terrain_raster(file, 1, std::nullopt);
     ASSERT_FALSE(refused.ok());
@@ -45,7 +45,7 @@ TEST_F(LocalCoordinates, ATerrainThatStatesNoneIsTakenWhereItIsSaid) {
     EXPECT_FALSE(to_wgs84(terrain->crs).ok()) << "its place on the globe is not known";
 }
 
-TEST_F(LocalCoordinates, ATerrainKeepsTheLocalSystemThatItStates) {
+TEST_F(LocalCoordinates, a_terrain_keeps_the_local_system_that_it_states) {
     const std::string file = flume(flume_system);
     for (const bool said : {false, true}) {
         const auto terrain = read_terrain_raster(file, 1, std::nullopt, said);
@@ -55,13 +55,13 @@ TEST_F(LocalCoordinates, ATerrainKeepsTheLocalSystemThatItStates) {
     }
 }
 
-TEST_F(LocalCoordinates, ATerrainWithAPlaceOnTheGlobeIsNotLocal) {
+TEST_F(LocalCoordinates, a_terrain_with_a_place_on_the_globe_is_not_local) {
     const auto terrain = read_terrain_raster(flume("", 2326), 1, std::nullopt, true);
     ASSERT_FALSE(terrain.ok());
     EXPECT_THAT(terrain.error().message, AllOf(HasSubstr("EPSG:2326"), HasSubstr("crs = \"local\" is for")));
 }
 
-TEST_F(LocalCoordinates, LayersThatSayNothingAreTakenToBeInThem) {
+TEST_F(LocalCoordinates, layers_that_say_nothing_are_taken_to_be_in_them) {
     const std::vector<std::string> files = {
         test::write_text(folder_.file("a.geojson"),
                          R"({"type": "Polygon", "coordinates": [[[0.1, 0.1], [0.3, 0.1], [0.3, 0.2], [0.1, 0.1]]]})"),
@@ -78,7 +78,7 @@ TEST_F(LocalCoordinates, LayersThatSayNothingAreTakenToBeInThem) {
     }
 }
 
-TEST_F(LocalCoordinates, ALayerWithALocalSystemOfAnyNameIsInThem) {
+TEST_F(LocalCoordinates, a_layer_with_a_local_system_of_any_name_is_in_them) {
     const std::string file = folder_.file("a.gpkg");
     const auto terrain = read_terrain_raster(flume(flume_system), 1, std::nullopt);
     ASSERT_TRUE(terrain.ok()) << terrain.error().message;
@@ -90,14 +90,14 @@ TEST_F(LocalCoordinates, ALayerWithALocalSystemOfAnyNameIsInThem) {
     EXPECT_EQ(layer->features[0].parts[0].outer[1].x, 0.2);
 }
 
-TEST_F(LocalCoordinates, ALayerWithAPlaceOnTheGlobeIsRefusedInOneSentence) {
+TEST_F(LocalCoordinates, a_layer_with_a_place_on_the_globe_is_refused_in_one_sentence) {
     const std::string file = test::write_vector(folder_.file("a.gpkg"),
                                                 {.driver = "GPKG", .epsg = 2326, .type = wkbPolygon}, {{square, {}}});
     EXPECT_THAT(refusal(file), AllOf(HasSubstr("is in EPSG:2326"), HasSubstr("the terrain in local coordinates")));
     EXPECT_LT(refusal(file).size(), file.size() + 120) << "no WKT";
 }
 
-TEST_F(LocalCoordinates, ALocalLayerOnATerrainWithASystemIsRefusedInOneSentence) {
+TEST_F(LocalCoordinates, a_local_layer_on_a_terrain_with_a_system_is_refused_in_one_sentence) {
     const std::string file = folder_.file("a.gpkg");
     const Polygon outline{{{0.1, 0.1}, {0.2, 0.1}, {0.2, 0.2}}, {}};
     ASSERT_TRUE(write_geopackage_layer(file, "release", {}, {{{outline}, {}, {}}}, Crs::own_metres()));
@@ -107,7 +107,7 @@ TEST_F(LocalCoordinates, ALocalLayerOnATerrainWithASystemIsRefusedInOneSentence)
     EXPECT_LT(layer.error().message.size(), 3 * file.size() + 250) << "no WKT";
 }
 
-TEST_F(LocalCoordinates, RastersOfTheTerrainAreInThemAsWell) {
+TEST_F(LocalCoordinates, rasters_of_the_terrain_are_in_them_as_well) {
     const auto values = read_value_raster(flume(flume_system), Crs::own_metres());
     ASSERT_TRUE(values.ok()) << values.error().message;
     const auto elsewhere = read_value_raster(flume("", 2326), Crs::own_metres());

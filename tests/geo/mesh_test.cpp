@@ -50,7 +50,7 @@ const char* const city_house = R"({"type": "CityJSON", "version": "2.0",
  "vertices": [[0, 0, 0], [1000, 0, 0], [1000, 600, 0], [0, 600, 0], [0, 0, 600], [1000, 0, 600], [1000, 600, 600],
   [0, 600, 600], [0, 300, 900], [1000, 300, 900]]})";
 
-TEST_F(Mesh, CityJsonGivesTheRoofFacesOfTheMostDetailedGeometry) {
+TEST_F(Mesh, cityjson_gives_the_roof_faces_of_the_most_detailed_geometry) {
     const auto buildings = read("a.city.json", city_house);
     ASSERT_TRUE(buildings) << buildings.error().message;
     ASSERT_EQ(buildings->size(), 1U);
@@ -67,7 +67,7 @@ TEST_F(Mesh, CityJsonGivesTheRoofFacesOfTheMostDetailedGeometry) {
     EXPECT_NEAR(area, 60, 1e-6);
 }
 
-TEST_F(Mesh, ObjGivesABuildingPerObjectWhicheverWayItsFacesTurn) {
+TEST_F(Mesh, obj_gives_a_building_per_object_whichever_way_its_faces_turn) {
     for (const bool turned : {false, true}) {
         const std::string top = turned ? "f 8 7 6 5\n" : "f 5 6 7 8\n";
         const auto buildings = read(
@@ -87,7 +87,7 @@ TEST_F(Mesh, ObjGivesABuildingPerObjectWhicheverWayItsFacesTurn) {
     }
 }
 
-TEST_F(Mesh, BadFilesAreRefusedWithThePlace) {
+TEST_F(Mesh, bad_files_are_refused_with_the_place) {
     EXPECT_THAT(refusal("a.obj", "v 1 2\n"), HasSubstr("a.obj:1: a vertex needs three finite numbers"));
     EXPECT_THAT(refusal("a.obj", "v 1 2 nan\n"), HasSubstr("three finite numbers"));
     EXPECT_THAT(refusal("a.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 4\n"),
@@ -116,7 +116,7 @@ TEST_F(Mesh, BadFilesAreRefusedWithThePlace) {
     EXPECT_THAT(changed("]]]]}]}", "]]]]}]"), HasSubstr("is not valid JSON"));
 }
 
-TEST_F(Mesh, HostileFilesAreRefusedAndNothingElse) {
+TEST_F(Mesh, hostile_files_are_refused_and_nothing_else) {
     std::mt19937 random(11);
     const std::string deep(200'000, '[');
     EXPECT_THAT(refusal("a.city.json", deep), HasSubstr("is nested 200000 levels deep; at most 64 are read"));

@@ -67,7 +67,7 @@ void expect_frames(GDALDataset& data, float none) {
     }
 }
 
-TEST(RasterSeries, CogHasABandPerFrame) {
+TEST(RasterSeries, cog_has_a_band_per_frame) {
     const TemporaryFolder folder;
     const std::string file = folder.file("depth.tif");
     const Status status = write_cog_series(file, series(), depth());
@@ -84,7 +84,7 @@ TEST(RasterSeries, CogHasABandPerFrame) {
     EXPECT_EQ(last->GetNoDataValue(), -9999);
 }
 
-TEST(RasterSeries, NetcdfFollowsTheConventions) {
+TEST(RasterSeries, netcdf_follows_the_conventions) {
     const TemporaryFolder folder;
     const std::string file = folder.file("maps.nc");
     Grid<float> terrain(cells, 55);
@@ -112,7 +112,7 @@ TEST(RasterSeries, NetcdfFollowsTheConventions) {
     EXPECT_EQ(row_of(*ground, 1, 0)[0], 55);
 }
 
-TEST(RasterSeries, NetcdfOfALocalSystemHasMetresAlone) {
+TEST(RasterSeries, netcdf_of_a_local_system_has_metres_alone) {
     const TemporaryFolder folder;
     const std::string file = folder.file("maps.nc");
     SeriesFile local = series();
@@ -127,7 +127,7 @@ TEST(RasterSeries, NetcdfOfALocalSystemHasMetresAlone) {
     EXPECT_EQ(data->GetMetadataItem("depth#grid_mapping"), nullptr);
 }
 
-TEST(RasterSeries, NetcdfOfASystemUnknownToTheConventionsHasWktAndPlaces) {
+TEST(RasterSeries, netcdf_of_a_system_unknown_to_the_conventions_has_wkt_and_places) {
     for (const auto& [epsg, x, y, lon, lat] :
          {std::tuple{2056, 2600000.0, 1200000.0, 7.4386, 46.9511},  // Switzerland: Bern
           std::tuple{5514, -740000.0, -1050000.0, 14.49, 50.03},    // Czechia: south of Prague
@@ -154,7 +154,7 @@ TEST(RasterSeries, NetcdfOfASystemUnknownToTheConventionsHasWktAndPlaces) {
     }
 }
 
-TEST(RasterSeries, FailureNamesTheFileAndLeavesNone) {
+TEST(RasterSeries, failure_names_the_file_and_leaves_none) {
     const TemporaryFolder folder;
     RasterSeries broken = depth();
     broken.read = [](std::size_t frame, int, float*) {

@@ -20,7 +20,7 @@ class TerrainFrames : public testing::Test {
     test::TemporaryFolder folder_;
 };
 
-TEST_F(TerrainFrames, TellsTheWholeRasterWithoutItsCells) {
+TEST_F(TerrainFrames, tells_the_whole_raster_without_its_cells) {
     const auto frame = read_terrain_frame(write({}), 1);
     ASSERT_TRUE(frame) << frame.error().message;
     EXPECT_EQ(frame->geometry, (GridGeometry{824000, 825000, 5, 20, 15}));
@@ -31,7 +31,7 @@ TEST_F(TerrainFrames, TellsTheWholeRasterWithoutItsCells) {
     EXPECT_FALSE(read_terrain_frame(folder_.file("nowhere.tif"), 1));
 }
 
-TEST_F(TerrainFrames, CoarseCellsAreMeansOfThoseWithData) {
+TEST_F(TerrainFrames, coarse_cells_are_means_of_those_with_data) {
     // 20 x 15 cells: three times as large, there are 6 x 5 of them, and two columns are left over in the east.
     const std::string file = write({.nodata = -9999, .declare_nodata = true}, [](int column, int row) {
         if (column < 3 && row < 2) return -9999.0;  // of the first coarse cell, a third has data
@@ -50,7 +50,7 @@ TEST_F(TerrainFrames, CoarseCellsAreMeansOfThoseWithData) {
     EXPECT_THAT(read_coarse_terrain(file, 1, std::nullopt, 10).error().message, HasSubstr("fewer than 2 x 2 cells"));
 }
 
-TEST_F(TerrainFrames, CommandsKeepTheNodataValueThatIsDeclared) {
+TEST_F(TerrainFrames, commands_keep_the_nodata_value_that_is_declared) {
     const std::string plain = write({});
     EXPECT_EQ(declare_nodata_command(plain, 1, 0),
               "gdal_translate -a_nodata 0 " + plain + " " + folder_.file("dem_nodata.tif"));

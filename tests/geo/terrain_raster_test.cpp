@@ -16,7 +16,7 @@ using test::TemporaryFolder;
 using testing::HasSubstr;
 
 /// A value that tells column and row apart.
-TEST(TerrainRaster, GivesCellsCountedFromTheSouthWest) {
+TEST(TerrainRaster, gives_cells_counted_from_the_south_west) {
     const TemporaryFolder folder;
     const std::string file = test::write_raster(folder.file("dem.tif"), {.columns = 7, .rows = 5}, pattern);
     const auto raster = read_terrain_raster(file, 1, std::nullopt);
@@ -35,7 +35,7 @@ TEST(TerrainRaster, GivesCellsCountedFromTheSouthWest) {
     EXPECT_FALSE(raster->nodata_value.has_value());
 }
 
-TEST(TerrainRaster, TellsTheLatitudeOfAPlace) {
+TEST(TerrainRaster, tells_the_latitude_of_a_place) {
     const TemporaryFolder folder;
     const auto raster = read_terrain_raster(test::write_raster(folder.file("dem.tif"), {}, pattern), 1, std::nullopt);
     ASSERT_TRUE(raster.ok()) << raster.error().message;
@@ -44,7 +44,7 @@ TEST(TerrainRaster, TellsTheLatitudeOfAPlace) {
     EXPECT_EQ(latitude_deg({}, {0, 0}), std::nullopt);
 }
 
-TEST(TerrainRaster, TurnsASouthUpRaster) {
+TEST(TerrainRaster, turns_a_south_up_raster) {
     const TemporaryFolder folder;
     const auto north = read_terrain_raster(test::write_raster(folder.file("n.tif"), {}, pattern), 1, std::nullopt);
     const auto south =
@@ -55,7 +55,7 @@ TEST(TerrainRaster, TurnsASouthUpRaster) {
     EXPECT_EQ(north->grid.values, south->grid.values);
 }
 
-TEST(TerrainRaster, RespectsPixelIsPoint) {
+TEST(TerrainRaster, respects_pixel_is_point) {
     const TemporaryFolder folder;
     const std::string file = test::write_raster(folder.file("point.tif"), {.pixel_is_point = true}, pattern);
     // The file really stores its position for the middle of the first cell: GDAL's raw view differs by half a cell.
@@ -74,7 +74,7 @@ TEST(TerrainRaster, RespectsPixelIsPoint) {
     EXPECT_EQ(raster->grid.geometry.y_min, 825000);
 }
 
-TEST(TerrainRaster, ReadsIntegersDoublesScaleAndOffset) {
+TEST(TerrainRaster, reads_integers_doubles_scale_and_offset) {
     const TemporaryFolder folder;
     for (const GDALDataType type : {GDT_Int16, GDT_UInt16, GDT_Int32, GDT_Float32, GDT_Float64}) {
         const std::string file =
@@ -86,7 +86,7 @@ TEST(TerrainRaster, ReadsIntegersDoublesScaleAndOffset) {
     }
 }
 
-TEST(TerrainRaster, NodataAndInfinityBecomeNaN) {
+TEST(TerrainRaster, nodata_and_infinity_become_na_n) {
     const TemporaryFolder folder;
     const std::string file =
         test::write_raster(folder.file("dem.tif"), {.columns = 10, .rows = 10, .nodata = -9999, .declare_nodata = true},
@@ -106,7 +106,7 @@ TEST(TerrainRaster, NodataAndInfinityBecomeNaN) {
     EXPECT_EQ(raster->nodata_value, -9999.0);
 }
 
-TEST(TerrainRaster, RoundedFloatNodataIsRecognised) {
+TEST(TerrainRaster, rounded_float_nodata_is_recognised) {
     const TemporaryFolder folder;
     const double lowest = -std::numeric_limits<float>::max();
     const std::string file =
@@ -117,7 +117,7 @@ TEST(TerrainRaster, RoundedFloatNodataIsRecognised) {
     EXPECT_TRUE(std::isnan(raster->grid.at(0, 3)));
 }
 
-TEST(TerrainRaster, ReadsOnlyTheExtentSnappedOutwardToCells) {
+TEST(TerrainRaster, reads_only_the_extent_snapped_outward_to_cells) {
     const TemporaryFolder folder;
     for (const bool south_up : {false, true}) {
         const std::string file = test::write_raster(folder.file("dem.tif"), {.south_up = south_up}, pattern);
@@ -130,7 +130,7 @@ TEST(TerrainRaster, ReadsOnlyTheExtentSnappedOutwardToCells) {
     }
 }
 
-TEST(TerrainRaster, ExtentBeyondTheRasterIsClippedAndOneOutsideRefused) {
+TEST(TerrainRaster, extent_beyond_the_raster_is_clipped_and_one_outside_refused) {
     const TemporaryFolder folder;
     const std::string file = test::write_raster(folder.file("dem.tif"), {}, pattern);
     const auto clipped = read_terrain_raster(file, 1, Extent{823000, 824000, 824020, 825020});
@@ -141,7 +141,7 @@ TEST(TerrainRaster, ExtentBeyondTheRasterIsClippedAndOneOutsideRefused) {
     EXPECT_THAT(outside.error().message, HasSubstr("the raster lies at 824000 to 824100 east"));
 }
 
-TEST(TerrainRaster, OfALargeRasterOnlyTheExtentIsRead) {
+TEST(TerrainRaster, of_a_large_raster_only_the_extent_is_read) {
     // 10^10 cells, of which a block is there: reading all of it would need 40 GB.
     const TemporaryFolder folder;
     const std::string file = folder.file("country.tif");
@@ -170,7 +170,7 @@ TEST(TerrainRaster, OfALargeRasterOnlyTheExtentIsRead) {
     EXPECT_THAT(all.error().message, HasSubstr("100000 x 100000 cells are to be read, at most 200 million can be"));
 }
 
-TEST(TerrainRaster, StatesTheVerticalUnitOfTheBandOrOfTheCrs) {
+TEST(TerrainRaster, states_the_vertical_unit_of_the_band_or_of_the_crs) {
     const TemporaryFolder folder;
     const auto stated =
         read_terrain_raster(test::write_raster(folder.file("m.tif"), {.unit = "metre"}, pattern), 1, std::nullopt);
@@ -195,7 +195,7 @@ TEST(TerrainRaster, StatesTheVerticalUnitOfTheBandOrOfTheCrs) {
     EXPECT_EQ(compound->crs.epsg, 2326) << "the vertical part does not belong to maps of depth";
 }
 
-TEST(TerrainRaster, ReadsOtherFormats) {
+TEST(TerrainRaster, reads_other_formats) {
     const TemporaryFolder folder;
     for (const auto& [driver, name] : {std::pair{"AAIGrid", "dem.asc"}, {"HFA", "dem.img"}, {"ENVI", "dem.bil"}}) {
         const std::string file = test::write_raster(folder.file(name), {.driver = driver}, pattern);
@@ -206,13 +206,13 @@ TEST(TerrainRaster, ReadsOtherFormats) {
     }
 }
 
-TEST(TerrainRaster, ReadsFromMemoryFiles) {
+TEST(TerrainRaster, reads_from_memory_files) {
     const std::string file = test::write_raster("/vsimem/talus_test_dem.tif", {}, pattern);
     EXPECT_TRUE(read_terrain_raster(file, 1, std::nullopt).ok());
     VSIUnlink(file.c_str());
 }
 
-TEST(ValueRaster, MustBeInTheCrsOfTheTerrainAndMayHoldAnything) {
+TEST(ValueRaster, must_be_in_the_crs_of_the_terrain_and_may_hold_anything) {
     const TemporaryFolder folder;
     const std::string file = test::write_raster(folder.file("thickness.tif"), {.nodata = 0, .declare_nodata = true},
                                                 [](int column, int) { return column == 0 ? 0 : 1.5; });

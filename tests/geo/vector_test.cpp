@@ -51,7 +51,7 @@ class Vectors : public testing::Test {
     TemporaryFolder folder_;
 };
 
-TEST_F(Vectors, PolygonsWithHolesAndAttributesFromEveryFormat) {
+TEST_F(Vectors, polygons_with_holes_and_attributes_from_every_format) {
     for (const auto& [driver, name] :
          {std::pair{"GeoJSON", "a.geojson"}, {"GPKG", "a.gpkg"}, {"ESRI Shapefile", "a.shp"}}) {
         const std::string file = write(
@@ -78,7 +78,7 @@ TEST_F(Vectors, PolygonsWithHolesAndAttributesFromEveryFormat) {
     }
 }
 
-TEST_F(Vectors, MultiPolygonsKeepTheirParts) {
+TEST_F(Vectors, multi_polygons_keep_their_parts) {
     const auto layer =
         read_polygons(write({{"MULTIPOLYGON (((0 0, 1 0, 1 1, 0 0)), ((5 5, 6 5, 6 6, 5 5)))"}}), "", without_wkt);
     ASSERT_TRUE(layer.ok()) << layer.error().message;
@@ -86,7 +86,7 @@ TEST_F(Vectors, MultiPolygonsKeepTheirParts) {
     EXPECT_EQ(layer->features[0].parts.size(), 2U);
 }
 
-TEST_F(Vectors, CurvesHeightsAndMeasuresAreFlattened) {
+TEST_F(Vectors, curves_heights_and_measures_are_flattened) {
     const std::string file = write({{"CURVEPOLYGON ZM (CIRCULARSTRING ZM (0 0 5 1, 10 0 5 1, 0 0 5 1))"},
                                     {"POLYGON Z ((0 0 9, 1 0 9, 1 1 9, 0 0 9))"}},
                                    {.driver = "GPKG"}, "curve.gpkg");
@@ -96,7 +96,7 @@ TEST_F(Vectors, CurvesHeightsAndMeasuresAreFlattened) {
     EXPECT_DOUBLE_EQ(plan_area(layer->features[1].parts[0]), 0.5);
 }
 
-TEST_F(Vectors, GeoJsonWithoutCrsIsWgs84AndIsReprojected) {
+TEST_F(Vectors, geojson_without_crs_is_wgs84_and_is_reprojected) {
     const std::string file = test::write_text(folder_.file("wgs84.geojson"), R"({"type": "FeatureCollection",
         "features": [{"type": "Feature", "properties": {}, "geometry": {"type": "Polygon", "coordinates":
         [[[114.181, 22.310606], [114.182, 22.310606], [114.182, 22.312], [114.181, 22.310606]]]}}]})");
@@ -108,7 +108,7 @@ TEST_F(Vectors, GeoJsonWithoutCrsIsWgs84AndIsReprojected) {
     EXPECT_NEAR(first.y, northing, 5);
 }
 
-TEST_F(Vectors, AxesInTheOrderOfTheAuthorityAreTurned) {
+TEST_F(Vectors, axes_in_the_order_of_the_authority_are_turned) {
     // GML keeps latitude first for EPSG:4326 and northing first for EPSG:2326.
     const auto gml = [](int epsg, double a, double b, double step) {
         std::ostringstream text;
@@ -133,7 +133,7 @@ TEST_F(Vectors, AxesInTheOrderOfTheAuthorityAreTurned) {
     }
 }
 
-TEST_F(Vectors, ShapefileInTheTerrainsCrsIsNotReprojected) {
+TEST_F(Vectors, shapefile_in_the_terrains_crs_is_not_reprojected) {
     const std::string file = write({{square}}, {.driver = "ESRI Shapefile", .type = wkbPolygon}, "same.shp");
     const auto layer = read_polygons(file, "", without_wkt);
     ASSERT_TRUE(layer.ok()) << layer.error().message;
@@ -141,7 +141,7 @@ TEST_F(Vectors, ShapefileInTheTerrainsCrsIsNotReprojected) {
     EXPECT_EQ(layer->features[0].parts[0].outer[0].x, 824100);
 }
 
-TEST_F(Vectors, TerrainsCrsAsReadFromARasterServes) {
+TEST_F(Vectors, terrains_crs_as_read_from_a_raster_serves) {
     const auto terrain = read_terrain_raster(test::write_plane(folder_.file("dem.tif")), 1, std::nullopt);
     ASSERT_TRUE(terrain.ok());
     const auto layer = read_polygons(write({{square}}), "", terrain->crs);
@@ -149,7 +149,7 @@ TEST_F(Vectors, TerrainsCrsAsReadFromARasterServes) {
     EXPECT_EQ(layer->reprojection, "");
 }
 
-TEST_F(Vectors, UnknownChangeOfDatumIsSaid) {
+TEST_F(Vectors, unknown_change_of_datum_is_said) {
     Crs local;
     local.name = "site grid";
     local.wkt = R"(PROJCRS["site grid",BASEGEOGCRS["site",DATUM["site datum",ELLIPSOID["e",6378000,298,)"
@@ -167,7 +167,7 @@ TEST_F(Vectors, UnknownChangeOfDatumIsSaid) {
                 AllOf(StartsWith("reprojected from EPSG:2326"), HasSubstr("without a known change of datum")));
 }
 
-TEST_F(Vectors, MissingFileFolderAndNonsense) {
+TEST_F(Vectors, missing_file_folder_and_nonsense) {
     EXPECT_THAT(refusal(folder_.file("nowhere.gpkg")), EndsWith(": no such file"));
     EXPECT_THAT(refusal(folder_.path().string()), HasSubstr("is a folder"));
     EXPECT_THAT(refusal(test::write_text(folder_.file("a.geojson"), "")), HasSubstr("is empty (0 bytes)"));
@@ -175,22 +175,22 @@ TEST_F(Vectors, MissingFileFolderAndNonsense) {
                 HasSubstr("cannot be read as a vector file"));
 }
 
-TEST_F(Vectors, SelfIntersectionNamesFeatureAndPlace) {
+TEST_F(Vectors, self_intersection_names_feature_and_place) {
     const std::string file = write({{square}, {"POLYGON ((0 0, 10 10, 10 0, 0 10, 0 0))"}});
     EXPECT_THAT(refusal(file), AllOf(HasSubstr("feature 2 (fid 1) is not a valid polygon: Self-intersection"),
                                      HasSubstr("5 5"), HasSubstr("ogr2ogr -makevalid")));
 }
 
-TEST_F(Vectors, EmptyLayer) {
+TEST_F(Vectors, empty_layer) {
     EXPECT_THAT(refusal(write({}, {.driver = "GPKG"}, "a.gpkg")), HasSubstr("layer \"layer\" has no features"));
 }
 
-TEST_F(Vectors, NullAndEmptyGeometry) {
+TEST_F(Vectors, null_and_empty_geometry) {
     EXPECT_THAT(refusal(write({{square}, {""}})), HasSubstr("feature 2 (fid 1) has no geometry"));
     EXPECT_THAT(refusal(write({{"POLYGON EMPTY"}}, {.driver = "GPKG"}, "a.gpkg")), HasSubstr("has no geometry"));
 }
 
-TEST_F(Vectors, WrongGeometry) {
+TEST_F(Vectors, wrong_geometry) {
     EXPECT_THAT(refusal(write({{"POINT (1 2)"}})), HasSubstr("feature 1 (fid 0) is a Point, a polygon is needed"));
     EXPECT_THAT(refusal(write({{"LINESTRING (1 2, 3 4)"}})), HasSubstr("is an open line, a polygon is needed"));
     EXPECT_THAT(refusal(write({{"POINT (1 2)"}})), HasSubstr("is a Point, a polygon is needed"));
@@ -199,7 +199,7 @@ TEST_F(Vectors, WrongGeometry) {
     EXPECT_THAT(line.error().message, HasSubstr("is a Polygon, a line is needed"));
 }
 
-TEST_F(Vectors, ClosedLinesArePolygons) {
+TEST_F(Vectors, closed_lines_are_polygons) {
     const std::string ring = "LINESTRING Z (0 0 1, 40 0 1, 40 30 1, 0 30 1, 0 0 1)";
     const auto layer =
         read_polygons(write({{ring}, {"MULTILINESTRING ((50 0, 60 0, 60 10, 50 0))"}, {square}}), "", without_wkt);
@@ -212,13 +212,13 @@ TEST_F(Vectors, ClosedLinesArePolygons) {
     EXPECT_THAT(refusal(write({{"LINESTRING (0 0, 10 10, 0 10, 10 0, 0 0)"}})), HasSubstr("is not a valid polygon"));
 }
 
-TEST_F(Vectors, MissingCrs) {
+TEST_F(Vectors, missing_crs) {
     const std::string file =
         write({{square}}, {.driver = "ESRI Shapefile", .epsg = 0, .type = wkbPolygon}, "nocrs.shp");
     EXPECT_THAT(refusal(file), HasSubstr("ogr2ogr -a_srs EPSG:nnnn " + folder_.file("nocrs_crs.gpkg") + " " + file));
 }
 
-TEST_F(Vectors, SeveralLayersNeedAName) {
+TEST_F(Vectors, several_layers_need_a_name) {
     const std::string file = write({{square}}, {.driver = "GPKG", .layer = "first"}, "two.gpkg");
     test::write_vector(file, {.driver = "GPKG", .layer = "second", .append = true}, {{square}, {square}});
     EXPECT_THAT(refusal(file), HasSubstr("has 2 layers; name one of them with layer = \"...\" in the scene, or as " +
@@ -233,7 +233,7 @@ TEST_F(Vectors, SeveralLayersNeedAName) {
     EXPECT_THAT(refusal(file + "|layername=second", "first"), HasSubstr("and layer = \"first\" another"));
 }
 
-TEST_F(Vectors, LinePartsAreJoinedWhicheverWayTheyRun) {
+TEST_F(Vectors, line_parts_are_joined_whichever_way_they_run) {
     const auto line = read_line(
         write({{"MULTILINESTRING Z ((20 0 1, 10 0 1, 10 0 1), (20 0 1, 30 5 1), (40 5 1, 30 5 1))"}}), "", without_wkt);
     ASSERT_TRUE(line.ok()) << line.error().message;
@@ -245,7 +245,7 @@ TEST_F(Vectors, LinePartsAreJoinedWhicheverWayTheyRun) {
     EXPECT_THAT(apart.error().message, HasSubstr("parts that are not connected"));
 }
 
-TEST_F(Vectors, EveryLineOfAFileIsReadOrAllAreRefused) {
+TEST_F(Vectors, every_line_of_a_file_is_read_or_all_are_refused) {
     const std::string file =
         write({{"LINESTRING (0 0, 0 60)", {"upper"}}, {"LINESTRING (50 0, 50 80, 50 90)", {"lower"}}},
               {.fields = {{"Name", OFTString}}});
@@ -278,7 +278,7 @@ std::string shapefile_with_bytes(const TemporaryFolder& folder, const std::strin
     return file;
 }
 
-TEST_F(Vectors, TextIsUtf8WhateverTheFileHolds) {
+TEST_F(Vectors, text_is_utf8_whatever_the_file_holds) {
     const auto latin1 =
         read_polygons(shapefile_with_bytes(folder_, "Geb\xE4ude", "M\xFCllerh\xFCtte"), "", without_wkt);
     ASSERT_TRUE(latin1.ok()) << latin1.error().message;
@@ -292,7 +292,7 @@ TEST_F(Vectors, TextIsUtf8WhateverTheFileHolds) {
     EXPECT_EQ(utf8->features[0].attributes.at("name"), Attribute("Müllerhütte"));
 }
 
-TEST_F(Vectors, LineIsReprojected) {
+TEST_F(Vectors, line_is_reprojected) {
     const auto line =
         read_line(write({{"LINESTRING (114.181 22.310606, 114.182 22.312)"}}, {.epsg = 4326}), "", without_wkt);
     ASSERT_TRUE(line.ok()) << line.error().message;

@@ -54,7 +54,7 @@ std::string message_on_full_disk(rlim_t limit, const std::function<Status()>& wr
     return message;
 }
 
-TEST(WriteCog, ReadsBackWithValuesNodataCrsUnitAndDescription) {
+TEST(WriteCog, reads_back_with_values_nodata_crs_unit_and_description) {
     const TemporaryFolder folder;
     const std::string file = folder.file("depth.tif");
     const Grid<float> grid = example(700, 600);
@@ -89,14 +89,14 @@ TEST(WriteCog, ReadsBackWithValuesNodataCrsUnitAndDescription) {
     }
 }
 
-TEST(WriteCog, LeavesNothingElseInTheFolder) {
+TEST(WriteCog, leaves_nothing_else_in_the_folder) {
     const TemporaryFolder folder;
     const Grid<float> grid = example(700, 600);
     ASSERT_TRUE(write_cog(folder.file("depth.tif"), {&grid, "depth", "m"}, hong_kong()).ok());
     EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder.path()), {}), 1);
 }
 
-TEST(WriteCog, FullDiskIsAnErrorAndLeavesNoFile) {
+TEST(WriteCog, full_disk_is_an_error_and_leaves_no_file) {
     const TemporaryFolder folder;
     const Grid<float> grid = example(700, 600);
     const Crs crs = hong_kong();
@@ -113,7 +113,7 @@ TEST(WriteCog, FullDiskIsAnErrorAndLeavesNoFile) {
     EXPECT_TRUE(std::filesystem::exists("/dev/full"));
 }
 
-TEST(WriteCog, MissingFolderIsAnError) {
+TEST(WriteCog, missing_folder_is_an_error) {
     const Grid<float> grid = example(4, 4);
     const Status status = write_cog("/nowhere/depth.tif", {&grid, "depth", "m"}, hong_kong());
     ASSERT_FALSE(status.ok());
@@ -131,7 +131,7 @@ std::vector<OutputFeature> houses(int count) {
     return features;
 }
 
-TEST(WriteGeoPackage, LayersReadBack) {
+TEST(WriteGeoPackage, layers_read_back) {
     const TemporaryFolder folder;
     const std::string file = folder.file("results.gpkg");
     const std::vector<Field> fields{{"name", true}, {"peak_force_kN"}};
@@ -160,7 +160,7 @@ TEST(WriteGeoPackage, LayersReadBack) {
     EXPECT_THAT(twice.error().message, StartsWith(file + ": layer \"buildings\" cannot be written: "));
 }
 
-TEST(WriteGeoPackage, FullDiskIsAnError) {
+TEST(WriteGeoPackage, full_disk_is_an_error) {
     const TemporaryFolder folder;
     const std::string file = folder.file("results.gpkg");
     const Crs crs = hong_kong();
@@ -174,7 +174,7 @@ TEST(WriteGeoPackage, FullDiskIsAnError) {
     }
 }
 
-TEST(Versions, AreKnown) {
+TEST(Versions, are_known) {
     EXPECT_THAT(gdal_version(), StartsWith("3."));
     EXPECT_THAT(proj_version(), HasSubstr("."));
 }

@@ -18,7 +18,7 @@ const Parameter& parameter(const std::string& section, const std::string& key) {
     return *p;
 }
 
-TEST(FieldTable, EveryKeyHasHelpAndAUniqueName) {
+TEST(FieldTable, every_key_has_help_and_a_unique_name) {
     for (const Section& section : scene_sections()) {
         EXPECT_FALSE(section.help.empty()) << section.name;
         std::set<std::string> keys;
@@ -45,7 +45,7 @@ constexpr std::size_t members() {
     }
 }
 
-TEST(FieldTable, EveryMemberIsDeclared) {
+TEST(FieldTable, every_member_is_declared) {
     const auto declared = [](const char* section) { return find_section(section)->parameters.size(); };
     EXPECT_EQ(declared("scene"), members<SceneInfo>());
     EXPECT_EQ(declared("report"), members<ReportSpec>());
@@ -75,7 +75,7 @@ TEST(FieldTable, EveryMemberIsDeclared) {
     EXPECT_EQ(declared("elevation_change"), members<ElevationChangeSpec>());
 }
 
-TEST(FieldTable, TheDayOfAReportIsAnIsoDate) {
+TEST(FieldTable, the_day_of_a_report_is_an_iso_date) {
     const Section& section = *find_section("report");
     SceneSpec spec;
     for (const char* day : {"", "2026-11-23", "2024-02-29"}) {
@@ -92,7 +92,7 @@ TEST(FieldTable, TheDayOfAReportIsAnIsoDate) {
     }
 }
 
-TEST(FieldTable, KeysOfMeasuresEndInTheirUnit) {
+TEST(FieldTable, keys_of_measures_end_in_their_unit) {
     const std::vector<std::pair<std::string, std::string>> suffixes = {
         {"m", "_m"},   {"s", "_s"},   {"m/s", "_mps"},  {"kg/m3", "_kgpm3"},
         {"m3", "_m3"}, {"Pa", "_Pa"}, {"m/s2", "_mps2"}};
@@ -107,7 +107,7 @@ TEST(FieldTable, KeysOfMeasuresEndInTheirUnit) {
     }
 }
 
-TEST(FieldTable, EveryDefaultIsAllowed) {
+TEST(FieldTable, every_default_is_allowed) {
     for (const Section& section : scene_sections()) {
         for (const Parameter& p : section.parameters) {
             const ParameterValue value = default_value(section, p);
@@ -154,7 +154,7 @@ bool same(const ParameterValue& a, const ParameterValue& b) {
     return a.index() == b.index() && toml_text(a) == toml_text(b);
 }
 
-TEST(FieldTable, EveryKeySetsItsOwnMemberAndNoOther) {
+TEST(FieldTable, every_key_sets_its_own_member_and_no_other) {
     for (const Section& section : scene_sections()) {
         for (const Parameter& p : section.parameters) {
             SceneSpec spec;
@@ -180,7 +180,7 @@ TEST(FieldTable, EveryKeySetsItsOwnMemberAndNoOther) {
     }
 }
 
-TEST(FieldTable, TiesOfAKeyAreRules) {
+TEST(FieldTable, ties_of_a_key_are_rules) {
     SceneSpec spec;
     spec.barriers.emplace_back().height = 2;
     spec.zones.emplace_back().friction_coefficient = 0.3;
@@ -207,7 +207,7 @@ TEST(FieldTable, TiesOfAKeyAreRules) {
               "cohesion_Pa: needs solver.internal_friction = \"stress\"; friction by pairs has no such law");
 }
 
-TEST(FieldTable, AnAbsentValueCanBeTakenBack) {
+TEST(FieldTable, an_absent_value_can_be_taken_back) {
     SceneSpec spec;
     const Parameter& p = parameter("solver", "time_step_s");
     p.set(spec, 0, 0.01);
@@ -216,7 +216,7 @@ TEST(FieldTable, AnAbsentValueCanBeTakenBack) {
     EXPECT_FALSE(spec.solver.time_step.has_value());
 }
 
-TEST(FieldTable, ValuesOutOfRangeNameTheRange) {
+TEST(FieldTable, values_out_of_range_name_the_range) {
     const Parameter& spacing = parameter("solver", "particle_spacing_m");
     EXPECT_EQ(problem_with(spacing, 0.5), "");
     EXPECT_EQ(problem_with(spacing, 0.0), "a number from 0.0001 to 100 (m)");
@@ -230,21 +230,21 @@ TEST(FieldTable, ValuesOutOfRangeNameTheRange) {
               R"(one of "wendland_c2", "cubic_spline", "spiky", "poly6_spiky")");
 }
 
-TEST(FieldTable, NumbersThatAreNotFiniteAreRefused) {
+TEST(FieldTable, numbers_that_are_not_finite_are_refused) {
     const double nan = std::nan(""), infinity = std::numeric_limits<double>::infinity();
     EXPECT_NE(problem_with(parameter("release", "start_time_s"), infinity), "");
     EXPECT_NE(problem_with(parameter("release", "start_time_s"), nan), "");
     EXPECT_NE(problem_with(parameter("terrain", "extent_m"), Extent{0, 0, infinity, 1}), "");
 }
 
-TEST(FieldTable, AnExtentMustHaveAnArea) {
+TEST(FieldTable, an_extent_must_have_an_area) {
     const Parameter& extent = parameter("terrain", "extent_m");
     EXPECT_EQ(problem_with(extent, Extent{0, 0, 1, 1}), "");
     EXPECT_NE(problem_with(extent, Extent{1, 0, 0, 1}), "");
     EXPECT_NE(problem_with(extent, Extent{0, 1, 1, 1}), "");
 }
 
-TEST(FieldTable, ChoicesFollowTheEnumeration) {
+TEST(FieldTable, choices_follow_the_enumeration) {
     SceneSpec spec;
     const Parameter& kernel = parameter("solver", "kernel");
     EXPECT_EQ(kernel.choices.size(), 4U);
@@ -255,7 +255,7 @@ TEST(FieldTable, ChoicesFollowTheEnumeration) {
     EXPECT_EQ(plain_text(kernel.get(spec, 0)), "poly6_spiky");
 }
 
-TEST(NearestWord, TakesTheSmallestEditDistance) {
+TEST(NearestWord, takes_the_smallest_edit_distance) {
     EXPECT_EQ(edit_distance("kitten", "sitting"), 3U);
     EXPECT_EQ(edit_distance("", "abc"), 3U);
     EXPECT_EQ(nearest_word("viscocity", {"friction_coefficient", "viscosity"}), "viscosity");
@@ -264,7 +264,7 @@ TEST(NearestWord, TakesTheSmallestEditDistance) {
     EXPECT_EQ(nearest_word("frictoin", {"viscosity", "friction_coefficient"}), "friction_coefficient");
 }
 
-TEST(KeysCalled, AreFoundByWhatOthersCallThemWhateverTheSpelling) {
+TEST(KeysCalled, are_found_by_what_others_call_them_whatever_the_spelling) {
     const Section& material = *find_section("material");
     EXPECT_THAT(keys_called(material, "mu"), ::testing::ElementsAre("friction_coefficient", "viscosity"));
     EXPECT_THAT(keys_called(material, "xsiVoellmy"), ::testing::ElementsAre("turbulent_friction_mps2"));
@@ -273,7 +273,7 @@ TEST(KeysCalled, AreFoundByWhatOthersCallThemWhateverTheSpelling) {
     EXPECT_TRUE(keys_called(material, "").empty());
 }
 
-TEST(KeysCalled, AreKeysOfNoSectionUnderThatName) {
+TEST(KeysCalled, are_keys_of_no_section_under_that_name) {
     for (const Section& section : scene_sections()) {
         for (const Parameter& parameter : section.parameters) {
             for (const std::string& synonym : parameter.synonyms) {

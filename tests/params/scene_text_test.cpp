@@ -25,15 +25,15 @@ void expect_committed(const std::string& path, const std::string& option, const 
     EXPECT_FALSE(std::getline(committed, line)) << "the file goes on after the generated text";
 }
 
-TEST(SceneReference, TheCommittedPageIsTheGeneratedOne) {
+TEST(SceneReference, the_committed_page_is_the_generated_one) {
     expect_committed("docs/scene-reference.md", "--markdown", scene_reference_markdown());
 }
 
-TEST(SceneReference, TheCommittedTypeScriptIsTheGeneratedOne) {
+TEST(SceneReference, the_committed_typescript_is_the_generated_one) {
     expect_committed("web/src/protocol/schema.ts", "--typescript", scene_typescript());
 }
 
-TEST(SceneReference, NamesEveryKeyWithUnitDefaultAndRange) {
+TEST(SceneReference, names_every_key_with_unit_default_and_range) {
     const std::string page = scene_reference_markdown(), text = scene_reference_text();
     for (const Section& section : scene_sections()) {
         for (const Parameter& p : section.parameters) {
@@ -45,7 +45,7 @@ TEST(SceneReference, NamesEveryKeyWithUnitDefaultAndRange) {
     EXPECT_THAT(page, HasSubstr("| from target_layers or target_particle_count |"));
 }
 
-TEST(WriteScene, SetsWhatDiffersAndCommentsTheRest) {
+TEST(WriteScene, sets_what_differs_and_comments_the_rest) {
     SceneSpec spec;
     spec.terrain.file = "dem.tif";
     spec.releases.resize(1);
@@ -65,7 +65,7 @@ TEST(WriteScene, SetsWhatDiffersAndCommentsTheRest) {
     EXPECT_THAT(text, HasSubstr("    \"One \\\"quoted\\\" sentence.\",\n"));
 }
 
-TEST(WriteShortScene, HasTwentyKeysAndWhatDiffers) {
+TEST(WriteShortScene, has_twenty_keys_and_what_differs) {
     SceneSpec spec;
     spec.terrain.file = "dem.tif";
     spec.releases.resize(1);
@@ -97,7 +97,7 @@ TEST(WriteShortScene, HasTwentyKeysAndWhatDiffers) {
     EXPECT_THAT(text, HasSubstr("\n# friction_coefficient = 0.4\n"));
 }
 
-TEST(WriteScene, EveryCommentedLineIsTheDefault) {
+TEST(WriteScene, every_commented_line_is_the_default) {
     SceneSpec spec;
     spec.releases.resize(1);
     std::size_t checked = 0;
@@ -125,7 +125,7 @@ TEST(WriteScene, EveryCommentedLineIsTheDefault) {
     EXPECT_THAT(write_short_scene(spec), HasSubstr("\n# turbulent_friction_mps2 = none\n"));
 }
 
-TEST(WriteScene, LinesStayWithinAPage) {
+TEST(WriteScene, lines_stay_within_a_page) {
     const std::string text = write_scene(SceneSpec{});
     std::size_t begin = 0;
     while (begin < text.size()) {
@@ -135,7 +135,7 @@ TEST(WriteScene, LinesStayWithinAPage) {
     }
 }
 
-TEST(TomlText, WritesNumbersExactlyAndEscapesText) {
+TEST(TomlText, writes_numbers_exactly_and_escapes_text) {
     EXPECT_EQ(toml_text(1.0 / 60), "0.016666666666666666");
     EXPECT_EQ(plain_text(1.0 / 60), "0.0166667");
     EXPECT_EQ(toml_text(std::string("a\"b\\c\nd\x01")), "\"a\\\"b\\\\c\\nd\\u0001\"");

@@ -11,7 +11,7 @@ namespace {
 
 using nlohmann::json;
 
-TEST_F(Products, KmlHasTheHitBuildingsTheOutlineAndTheArrivalInDegrees) {
+TEST_F(Products, kml_has_the_hit_buildings_the_outline_and_the_arrival_in_degrees) {
     const std::string file = folder_->file("results.kml");
     const GDALDatasetUniquePtr data(GDALDataset::Open(file.c_str(), GDAL_OF_VECTOR));
     ASSERT_TRUE(data);
@@ -31,7 +31,7 @@ TEST_F(Products, KmlHasTheHitBuildingsTheOutlineAndTheArrivalInDegrees) {
     }
 }
 
-TEST_F(Products, KmlIsWellFormedWhateverNamesHold) {
+TEST_F(Products, kml_is_well_formed_whatever_names_hold) {
     const test::TemporaryFolder folder;
     scene::Scene scene = *scene_;
     scene.spec.scene.title = "a < b & \x01 \"c\"";
@@ -44,7 +44,7 @@ TEST_F(Products, KmlIsWellFormedWhateverNamesHold) {
     EXPECT_THAT(text, testing::HasSubstr("a &lt; b &amp; "));
 }
 
-TEST_F(Products, TitlesSayOnceThatTheSceneIsAReconstruction) {
+TEST_F(Products, titles_say_once_that_the_scene_is_a_reconstruction) {
     scene::Scene scene = *scene_;
     scene.spec.scene.title = "Valley";
     EXPECT_EQ(title_of(scene, *result_), "Valley (reconstruction)");
@@ -57,7 +57,7 @@ TEST_F(Products, TitlesSayOnceThatTheSceneIsAReconstruction) {
     EXPECT_EQ(title_of(scene, *result_), "Valley 1999 (reconstruction)");
 }
 
-TEST_F(Products, NoKmlWhereThePlaceOnTheGlobeIsNotKnown) {
+TEST_F(Products, no_kml_where_the_place_on_the_globe_is_not_known) {
     const test::TemporaryFolder folder;
     scene::Scene scene = *scene_;
     scene.crs = {"LOCAL_CS[\"site\",UNIT[\"metre\",1]]", "site", 0};
@@ -66,7 +66,7 @@ TEST_F(Products, NoKmlWhereThePlaceOnTheGlobeIsNotKnown) {
     EXPECT_TRUE(json::parse(test::read_text(folder.path() / "stac_item.json"))["geometry"].is_null());
 }
 
-TEST_F(Products, StacItemHasPlaceSoftwareAndEveryFile) {
+TEST_F(Products, stac_item_has_place_software_and_every_file) {
     const json item = json::parse(test::read_text(folder_->path() / "stac_item.json"));
     EXPECT_EQ(item["type"], "Feature");
     EXPECT_EQ(item["stac_version"], "1.0.0");
@@ -88,7 +88,7 @@ TEST_F(Products, StacItemHasPlaceSoftwareAndEveryFile) {
     }
 }
 
-TEST_F(Products, StacItemHasTheRunOverTime) {
+TEST_F(Products, stac_item_has_the_run_over_time) {
     const test::TemporaryFolder folder;
     std::filesystem::create_directories(folder.path() / "series/paraview");
     for (const char* name :

@@ -49,7 +49,7 @@ class ComparisonProducts : public testing::Test {
     }
 };
 
-TEST_F(ComparisonProducts, TablesHaveARowPerRunAndTwoColumnsPerQuantity) {
+TEST_F(ComparisonProducts, tables_have_a_row_per_run_and_two_columns_per_quantity) {
     ASSERT_TRUE(write_comparisons(comparisons, result, folder.path()).ok());
     const auto table = rows("convergence.csv");
     ASSERT_EQ(table.size(), 5U) << "header, as given, three refinements";
@@ -71,7 +71,7 @@ TEST_F(ComparisonProducts, TablesHaveARowPerRunAndTwoColumnsPerQuantity) {
     EXPECT_EQ(varied[2][2], "complete") << "a sensitivity passes no judgement";
 }
 
-TEST_F(ComparisonProducts, StandInTheFolderAndInTheManifest) {
+TEST_F(ComparisonProducts, stand_in_the_folder_and_in_the_manifest) {
     ASSERT_TRUE(write_products(scene, result, folder.path(), comparisons).ok());
     const json manifest = json::parse(read_text(folder.path() / "manifest.json"));
     EXPECT_THAT(manifest.at("files"), testing::IsSupersetOf({"convergence.csv", "variants.csv"}));
@@ -86,13 +86,13 @@ TEST_F(ComparisonProducts, StandInTheFolderAndInTheManifest) {
     EXPECT_THAT(read_text(folder.path() / "report.html"), HasSubstr("<section id=\"convergence\">"));
 }
 
-TEST_F(ComparisonProducts, NothingIsSaidOfThemWithoutVariants) {
+TEST_F(ComparisonProducts, nothing_is_said_of_them_without_variants) {
     const std::string html = test::report_page(scene, result);
     EXPECT_THAT(html, Not(HasSubstr("<section id=\"convergence\">")));
     EXPECT_THAT(html, Not(HasSubstr("<section id=\"sensitivity\">")));
 }
 
-TEST_F(ComparisonProducts, ConvergenceUnknownIsNotCalledConverged) {
+TEST_F(ComparisonProducts, convergence_unknown_is_not_called_converged) {
     EXPECT_THAT(page(), HasSubstr("<dd class=\"beyond\"><b>Convergence.</b> Not converged: 3 of 22 changes above their "
                                   "limit, 1 of 3 runs missing"));
     EXPECT_THAT(sections(), HasSubstr("Not converged: 3 of 22 changes above their limit, 1 of 3 runs missing"));
@@ -104,7 +104,7 @@ TEST_F(ComparisonProducts, ConvergenceUnknownIsNotCalledConverged) {
     EXPECT_THAT(sections(), HasSubstr("<b class=\"good\">Converged: none of 11 changes above its limit.</b>"));
 }
 
-TEST_F(ComparisonProducts, ReportSaysWhatIsMissingAndWhatWasNotMeasured) {
+TEST_F(ComparisonProducts, report_says_what_is_missing_and_what_was_not_measured) {
     scene.spec.observations.clear();
     result.observation.front.clear();
     result.observation.run_out.front_chainage = observe::never;
@@ -119,7 +119,7 @@ TEST_F(ComparisonProducts, ReportSaysWhatIsMissingAndWhatWasNotMeasured) {
     EXPECT_THAT(html, Not(HasSubstr("<figure>"))) << "no front, nothing to draw";
 }
 
-TEST_F(ComparisonProducts, TextsOfUsersAreEscaped) {
+TEST_F(ComparisonProducts, texts_of_users_are_escaped) {
     const std::string evil = "<script>alert(1)</script>";
     comparisons = {
         compare(run::ComparisonKind::sensitivity, scene, result,

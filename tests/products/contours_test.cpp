@@ -14,13 +14,13 @@ namespace {
 
 using test::TemporaryFolder;
 
-TEST(ContoursOfMaps, CanBeAskedForOfEveryMapOfARun) {
+TEST(ContoursOfMaps, can_be_asked_for_of_every_map_of_a_run) {
     std::set<std::string> maps = {report::thickness_map().file, report::erosion_map().file};
     for (const report::HazardMap& map : report::hazard_maps()) maps.insert(map.file);
     EXPECT_EQ(maps, std::set<std::string>(params::contour_maps.begin(), params::contour_maps.end()));
 }
 
-TEST(ContoursOfMaps, AreLinesWithValueAndUnit) {
+TEST(ContoursOfMaps, are_lines_with_value_and_unit) {
     const TemporaryFolder folder;
     scene::Scene scene = test::sample_scene();
     const run::RunResult result = test::sample_result(scene);

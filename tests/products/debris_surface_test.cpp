@@ -21,7 +21,7 @@ class Surface : public ViewOfARun {
     SeriesFrames frames{folder.path() / ".frames"};
 };
 
-TEST_F(Surface, LiesOnTheCellsOfTheMapAroundAllThatDebrisReached) {
+TEST_F(Surface, lies_on_the_cells_of_the_map_around_all_that_debris_reached) {
     add_frames(1);
     const GridGeometry& map = result.observation.maps.peak_depth.geometry;
     const auto surface = DebrisSurface::make(scene.terrain, result.observation.maps.peak_depth, frames);
@@ -37,7 +37,7 @@ TEST_F(Surface, LiesOnTheCellsOfTheMapAroundAllThatDebrisReached) {
     EXPECT_LE(shown.y_max, terrain.y_max);
 }
 
-TEST_F(Surface, TakesAtMostSoManyFramesWithTheFirstAndTheLast) {
+TEST_F(Surface, takes_at_most_so_many_frames_with_the_first_and_the_last) {
     add_frames(357);
     const auto surface = DebrisSurface::make(scene.terrain, result.observation.maps.peak_depth, frames);
     ASSERT_TRUE(surface);
@@ -51,7 +51,7 @@ TEST_F(Surface, TakesAtMostSoManyFramesWithTheFirstAndTheLast) {
     }
 }
 
-TEST_F(Surface, OfALargeMapIsCoarserAndKeepsTheVolume) {
+TEST_F(Surface, of_a_large_map_is_coarser_and_keeps_the_volume) {
     // 1.4 km of plain with cells of 1 m, all of it reached.
     scene.terrain = terrain::Terrain(Grid<float>({824000, 825000, 10, 140, 140}, 7));
     const Grid<float> peak({824100, 825100, 1, 1200, 1200}, 1);

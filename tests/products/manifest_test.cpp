@@ -16,7 +16,7 @@ using testing::IsEmpty;
 using testing::Not;
 using testing::StartsWith;
 
-TEST_F(Products, ManifestCountsBarriersApart) {
+TEST_F(Products, manifest_counts_barriers_apart) {
     const TemporaryFolder folder;
     run::RunResult result = *result_;
     result.observation.buildings[0].is_barrier = true;
@@ -28,7 +28,7 @@ TEST_F(Products, ManifestCountsBarriersApart) {
     EXPECT_EQ(m["results"]["barriers_hit"], 1);
 }
 
-TEST_F(Products, ManifestHoldsEveryParameterOfTheFieldTable) {
+TEST_F(Products, manifest_holds_every_parameter_of_the_field_table) {
     const json parameters = manifest()["parameters"];
     int count = 0;
     for_each_value(scene_->spec, [&](const params::Section& section, std::size_t index,
@@ -45,7 +45,7 @@ TEST_F(Products, ManifestHoldsEveryParameterOfTheFieldTable) {
     EXPECT_EQ(parameters["observation"].size(), 2U);
 }
 
-TEST_F(Products, ManifestSaysWhatRanWhereAndHowFast) {
+TEST_F(Products, manifest_says_what_ran_where_and_how_fast) {
     const json m = manifest();
     EXPECT_EQ(m["program"], "talus");
     EXPECT_EQ(m["status"], "complete");
@@ -80,7 +80,7 @@ TEST_F(Products, ManifestSaysWhatRanWhereAndHowFast) {
     EXPECT_THAT(m["files"].get<std::vector<std::string>>(), testing::Contains("report.html"));
 }
 
-TEST_F(Products, ManifestWritesNullForWhatDoesNotExist) {
+TEST_F(Products, manifest_writes_null_for_what_does_not_exist) {
     const TemporaryFolder folder;
     run::RunResult result = *result_;
     result.observation.run_out = {};
@@ -89,7 +89,7 @@ TEST_F(Products, ManifestWritesNullForWhatDoesNotExist) {
     EXPECT_TRUE(m["results"]["runout_angle_deg"].is_null());
 }
 
-TEST_F(Products, ManifestSurvivesNamesThatAreNotUtf8) {
+TEST_F(Products, manifest_survives_names_that_are_not_utf8) {
     const TemporaryFolder folder;
     scene::Scene scene = *scene_;
     scene.releases[0].name = "Gr\xfcn";

@@ -17,7 +17,7 @@ using testing::HasSubstr;
 using testing::Not;
 using testing::StartsWith;
 
-TEST_F(Products, MapsReadBackInTheirUnits) {
+TEST_F(Products, maps_read_back_in_their_units) {
     const observe::HazardMaps& maps = result_->observation.maps;
     const std::tuple<const char*, const Grid<float>*, const char*, double> expected[] = {
         {"peak_depth", &maps.peak_depth, "m", 1},
@@ -51,7 +51,7 @@ TEST_F(Products, MapsReadBackInTheirUnits) {
     }
 }
 
-TEST_F(Products, EveryMapHasAStyleThatParsesWithAscendingLimitsAndUnits) {
+TEST_F(Products, every_map_has_a_style_that_parses_with_ascending_limits_and_units) {
     for (const report::HazardMap& map : report::hazard_maps()) {
         const std::string text = test::read_text(folder_->path() / (std::string(map.file) + ".qml"));
         CPLXMLNode* tree = CPLParseXMLString(text.c_str());
@@ -81,7 +81,7 @@ TEST_F(Products, EveryMapHasAStyleThatParsesWithAscendingLimitsAndUnits) {
     }
 }
 
-TEST_F(Products, StylesOrderClassesByLightness) {
+TEST_F(Products, styles_order_classes_by_lightness) {
     for (const report::HazardMap& map : report::hazard_maps()) {
         const auto classes =
             map.breaks.empty() ? report::even_classes(40, map.ramp) : report::fixed_classes(map.breaks, 1e6, map.ramp);
@@ -93,13 +93,13 @@ TEST_F(Products, StylesOrderClassesByLightness) {
     }
 }
 
-TEST_F(Products, StyleLeavesZeroDepthAndThinDepositsTransparent) {
+TEST_F(Products, style_leaves_zero_depth_and_thin_deposits_transparent) {
     EXPECT_THAT(test::read_text(folder_->path() / "peak_depth.qml"), HasSubstr("<item value=\"0\""));
     EXPECT_THAT(test::read_text(folder_->path() / "deposit_depth.qml"), HasSubstr("label=\"up to 0.05 m\""));
     EXPECT_THAT(test::read_text(folder_->path() / "arrival_time.qml"), Not(HasSubstr("alpha=\"0\"")));
 }
 
-TEST_F(Products, MapsSayWhichRunTheyAreOf) {
+TEST_F(Products, maps_say_which_run_they_are_of) {
     const GDALDatasetUniquePtr data(GDALDataset::Open(folder_->file("peak_depth.tif").c_str()));
     ASSERT_TRUE(data);
     const auto item = [&](const char* key) {
@@ -113,7 +113,7 @@ TEST_F(Products, MapsSayWhichRunTheyAreOf) {
     EXPECT_EQ(item("STATUS"), "complete");
 }
 
-TEST_F(Products, IntensityIsARasterOfClassesWithAStyleAndPolygonsOfTheSameArea) {
+TEST_F(Products, intensity_is_a_raster_of_classes_with_a_style_and_polygons_of_the_same_area) {
     const Grid<float> map =
         intensity_map(report::intensity_guideline(scene_->spec.outputs.intensity_guideline), result_->observation.maps);
     const GDALDatasetUniquePtr data(GDALDataset::Open(folder_->file("intensity.tif").c_str()));

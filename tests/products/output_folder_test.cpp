@@ -33,7 +33,7 @@ class OutputFolders : public testing::Test {
     TemporaryFolder parent_;
 };
 
-TEST_F(OutputFolders, NameAppearsOnlyWhenCommitted) {
+TEST_F(OutputFolders, name_appears_only_when_committed) {
     {
         auto folder = OutputFolder::create(parent_.path() / "out", false);
         ASSERT_TRUE(folder.ok()) << folder.error().message;
@@ -47,7 +47,7 @@ TEST_F(OutputFolders, NameAppearsOnlyWhenCommitted) {
     EXPECT_EQ(listing(), std::vector<std::string>{"out"});
 }
 
-TEST_F(OutputFolders, AbandonedOneLeavesNothing) {
+TEST_F(OutputFolders, abandoned_one_leaves_nothing) {
     {
         auto folder = OutputFolder::create(parent_.path() / "out", false);
         ASSERT_TRUE(folder.ok());
@@ -58,7 +58,7 @@ TEST_F(OutputFolders, AbandonedOneLeavesNothing) {
     EXPECT_TRUE(listing().empty());
 }
 
-TEST_F(OutputFolders, WhatKilledRunsOfTheSameOutputLeftIsDeletedByTheNext) {
+TEST_F(OutputFolders, what_killed_runs_of_the_same_output_left_is_deleted_by_the_next) {
     for (const char* name : {".out.unfinished-4711-0", ".out.unfinished-1-12", ".other.unfinished-4711-0",
                              ".out.unfinished-notes", ".out.replaced-4711-0"}) {
         fs::create_directory(parent_.path() / name);
@@ -77,7 +77,7 @@ TEST_F(OutputFolders, WhatKilledRunsOfTheSameOutputLeftIsDeletedByTheNext) {
     EXPECT_EQ(listing(), expected);
 }
 
-TEST_F(OutputFolders, ExistingOneIsRefusedWithoutForce) {
+TEST_F(OutputFolders, existing_one_is_refused_without_force) {
     const fs::path out = make_result("out");
     EXPECT_EQ(refusal(out, false), out.string() +
                                        ": is already there; name another output folder, or replace an earlier result "
@@ -86,7 +86,7 @@ TEST_F(OutputFolders, ExistingOneIsRefusedWithoutForce) {
     EXPECT_EQ(listing(), std::vector<std::string>{"out"}) << "nothing half-made stays behind";
 }
 
-TEST_F(OutputFolders, ForceReplacesAnEarlierResultAtTheEnd) {
+TEST_F(OutputFolders, force_replaces_an_earlier_result_at_the_end) {
     const fs::path out = make_result("out");
     test::write_text((out / "old.txt").string(), "old");
     auto folder = OutputFolder::create(out, true);
@@ -99,7 +99,7 @@ TEST_F(OutputFolders, ForceReplacesAnEarlierResultAtTheEnd) {
     EXPECT_EQ(listing(), std::vector<std::string>{"out"});
 }
 
-TEST_F(OutputFolders, ForceNeverReplacesWhatIsNoResult) {
+TEST_F(OutputFolders, force_never_replaces_what_is_no_result) {
     const fs::path plain = parent_.path() / "thesis";
     fs::create_directory(plain);
     test::write_text((plain / "chapter1.txt").string(), "years of work");
@@ -111,14 +111,14 @@ TEST_F(OutputFolders, ForceNeverReplacesWhatIsNoResult) {
     EXPECT_TRUE(fs::exists(plain / "chapter1.txt"));
 }
 
-TEST_F(OutputFolders, ForceAcceptsAnEmptyFolder) {
+TEST_F(OutputFolders, force_accepts_an_empty_folder) {
     fs::create_directory(parent_.path() / "out");
     auto folder = OutputFolder::create(parent_.path() / "out", true);
     ASSERT_TRUE(folder.ok());
     EXPECT_TRUE(folder->commit().ok());
 }
 
-TEST_F(OutputFolders, OneThatAppearsMeanwhileIsNotOverwritten) {
+TEST_F(OutputFolders, one_that_appears_meanwhile_is_not_overwritten) {
     auto folder = OutputFolder::create(parent_.path() / "out", false);
     ASSERT_TRUE(folder.ok());
     test::write_text((make_result("out") / "other.txt").string(), "of another run");
@@ -133,14 +133,14 @@ TEST_F(OutputFolders, OneThatAppearsMeanwhileIsNotOverwritten) {
     EXPECT_TRUE(fs::exists(parent_.path() / "thesis" / "chapter1.txt"));
 }
 
-TEST_F(OutputFolders, TwoRunsAtOnceDoNotShareATemporaryFolder) {
+TEST_F(OutputFolders, two_runs_at_once_do_not_share_a_temporary_folder) {
     const auto first = OutputFolder::create(parent_.path() / "out", false);
     const auto second = OutputFolder::create(parent_.path() / "out", false);
     ASSERT_TRUE(first.ok() && second.ok());
     EXPECT_NE(first->path(), second->path());
 }
 
-TEST_F(OutputFolders, LinkIsFollowed) {
+TEST_F(OutputFolders, link_is_followed) {
     const fs::path out = make_result("real");
     fs::create_directory_symlink(out, parent_.path() / "latest");
     EXPECT_THAT(refusal(parent_.path() / "latest", false), HasSubstr("is already there"));
@@ -152,7 +152,7 @@ TEST_F(OutputFolders, LinkIsFollowed) {
     EXPECT_TRUE(fs::is_symlink(parent_.path() / "latest"));
 }
 
-TEST_F(OutputFolders, MissingFoldersAboveItAreMadeAndLeftOnlyWithAResult) {
+TEST_F(OutputFolders, missing_folders_above_it_are_made_and_left_only_with_a_result) {
     const fs::path deep = parent_.path() / "a" / "b" / "c";
     {
         auto folder = OutputFolder::create(deep, false);
@@ -173,7 +173,7 @@ TEST_F(OutputFolders, MissingFoldersAboveItAreMadeAndLeftOnlyWithAResult) {
     EXPECT_TRUE(fs::exists(deep));
 }
 
-TEST_F(OutputFolders, UnwritablePlace) {
+TEST_F(OutputFolders, unwritable_place) {
     (void)test::write_text(parent_.file("file"), "text");
     EXPECT_THAT(refusal(parent_.path() / "file" / "out", false), HasSubstr("is a file, not a folder"));
     EXPECT_THAT(refusal("/proc/talus_out", false), StartsWith("/proc/talus_out: cannot be made in /proc: "));

@@ -57,7 +57,7 @@ bool is_xml(const std::string& text) {
     return parsed;
 }
 
-TEST(ParticleSeries, FramesHoldEveryParticleAtTheDeclaredOffsets) {
+TEST(ParticleSeries, frames_hold_every_particle_at_the_declared_offsets) {
     const TemporaryFolder folder;
     ParticleSeries series(folder.path() / "particles");
     const LocalFrame frame = far_frame();
@@ -85,7 +85,7 @@ TEST(ParticleSeries, FramesHoldEveryParticleAtTheDeclaredOffsets) {
     EXPECT_TRUE(is_xml(file.substr(0, start) + file.substr(end)));
 }
 
-TEST(ParticleSeries, CollectionListsTheFramesWithTheirTimes) {
+TEST(ParticleSeries, collection_lists_the_frames_with_their_times) {
     const TemporaryFolder folder;
     ParticleSeries series(folder.path());
     sim::State state = three_particles();
@@ -101,7 +101,7 @@ TEST(ParticleSeries, CollectionListsTheFramesWithTheirTimes) {
     EXPECT_TRUE(std::filesystem::exists(folder.path() / "particles_000001.vtp"));
 }
 
-TEST(ParticleSeries, FailureNamesTheFile) {
+TEST(ParticleSeries, failure_names_the_file) {
     const Status status = ParticleSeries("/proc/talus").write_frame(far_frame(), three_particles());
     ASSERT_FALSE(status.ok());
     EXPECT_EQ(status.error().message.rfind("/proc/talus: cannot be made: ", 0), 0U) << status.error().message;

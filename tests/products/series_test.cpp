@@ -35,7 +35,7 @@ std::vector<float> row_of(const SeriesFrames& frames, std::size_t quantity, cons
     return values;
 }
 
-TEST(SeriesFrames, GiveTheirRowsOnAnyGridOfTheirCells) {
+TEST(SeriesFrames, give_their_rows_on_any_grid_of_their_cells) {
     const TemporaryFolder folder;
     const GridGeometry map{1000, 2000, 2.5, 6, 4};
     {
@@ -75,7 +75,7 @@ class SeriesOfARun : public testing::Test {
     TemporaryFolder folder;
 };
 
-TEST_F(SeriesOfARun, OneThatFailsTakesNoOtherWithIt) {
+TEST_F(SeriesOfARun, one_that_fails_takes_no_other_with_it) {
     scene.spec.outputs.series = {"netcdf", "geotiff"};
     Series series(scene, folder.path() / "series");
     ASSERT_TRUE(series.add(frame_at(0, result.observation.maps.peak_depth.geometry)));
@@ -87,7 +87,7 @@ TEST_F(SeriesOfARun, OneThatFailsTakesNoOtherWithIt) {
     EXPECT_FALSE(std::filesystem::exists(folder.path() / "series/maps.nc"));
 }
 
-TEST_F(SeriesOfARun, IsOnTheCellsOfItsMapsAndSaysWhereItIsFrom) {
+TEST_F(SeriesOfARun, is_on_the_cells_of_its_maps_and_says_where_it_is_from) {
     const Status status = write({"netcdf", "geotiff"});
     ASSERT_TRUE(status.ok()) << status.error().message;
     std::set<std::string> files;
@@ -117,7 +117,7 @@ TEST_F(SeriesOfARun, IsOnTheCellsOfItsMapsAndSaysWhereItIsFrom) {
     EXPECT_THAT(netcdf->GetMetadataItem("NC_GLOBAL#source"), HasSubstr("talus "));
 }
 
-TEST_F(SeriesOfARun, NamesTheFileThatItCannotWrite) {
+TEST_F(SeriesOfARun, names_the_file_that_it_cannot_write) {
     test::write_text(folder.file("series"), "in the way");
     const Status status = write({"netcdf"});
     ASSERT_FALSE(status.ok());

@@ -33,7 +33,7 @@ std::vector<std::vector<std::string>> rows_of(const std::string& text) {
     return rows;
 }
 
-TEST_F(Products, FrontTableLeavesUnknownVelocitiesEmpty) {
+TEST_F(Products, front_table_leaves_unknown_velocities_empty) {
     const auto rows = rows_of(test::read_text(folder_->path() / "front.csv"));
     const auto& front = result_->observation.front;
     ASSERT_EQ(rows.size(), front.size() + 1);
@@ -47,7 +47,7 @@ TEST_F(Products, FrontTableLeavesUnknownVelocitiesEmpty) {
     EXPECT_NEAR(std::stod(rows[51][3]), sample.particle_speed, 1e-6);
 }
 
-TEST_F(Products, RunOutTableGivesAnglesInDegrees) {
+TEST_F(Products, run_out_table_gives_angles_in_degrees) {
     const auto rows = rows_of(test::read_text(folder_->path() / "run_out.csv"));
     ASSERT_EQ(rows.size(), 2U);
     EXPECT_THAT(rows[0], ElementsAre("run_out_along_flow_m", "run_out_straight_m", "at_least", "toe_x_m", "toe_y_m",
@@ -56,7 +56,7 @@ TEST_F(Products, RunOutTableGivesAnglesInDegrees) {
     EXPECT_EQ(rows[1][2], "no");
 }
 
-TEST_F(Products, BuildingTableUsesKilonewtonAndKilopascal) {
+TEST_F(Products, building_table_uses_kilonewton_and_kilopascal) {
     const auto rows = rows_of(test::read_text(folder_->path() / "buildings.csv"));
     ASSERT_EQ(rows.size(), 6U);
     EXPECT_THAT(rows[0], ElementsAre("name", "hit", "first_hit_time_s", "peak_force_kN", "peak_impact_pressure_kPa",
@@ -79,7 +79,7 @@ TEST_F(Products, BuildingTableUsesKilonewtonAndKilopascal) {
     EXPECT_EQ(rows[5].back(), "") << "never hit: no intensity";
 }
 
-TEST_F(Products, BarriersHaveTheirVolumesAndTheirHistory) {
+TEST_F(Products, barriers_have_their_volumes_and_their_history) {
     const TemporaryFolder folder;
     run::RunResult result = *result_;
     observe::BuildingImpact& dam = result.observation.buildings[0];
@@ -120,7 +120,7 @@ TEST_F(Products, BarriersHaveTheirVolumesAndTheirHistory) {
     EXPECT_THAT(without, testing::Not(HasSubstr("Force on structures over time.")));
 }
 
-TEST_F(Products, NamesWithCommasAndQuotesAreQuoted) {
+TEST_F(Products, names_with_commas_and_quotes_are_quoted) {
     const TemporaryFolder folder;
     run::RunResult result = *result_;
     result.observation.buildings[0].name = "Block \"A\", 沙田";
@@ -128,7 +128,7 @@ TEST_F(Products, NamesWithCommasAndQuotesAreQuoted) {
     EXPECT_THAT(test::read_text(folder.path() / "buildings.csv"), HasSubstr("\n\"Block \"\"A\"\", 沙田\",yes,"));
 }
 
-TEST_F(Products, TablesOfARunThatWasChangedOnTheWaySaySoInEveryRow) {
+TEST_F(Products, tables_of_a_run_that_was_changed_on_the_way_say_so_in_every_row) {
     const TemporaryFolder folder;
     run::RunResult result = *result_;
     result.observation.buildings[0].history = {{11, 2000, 900, 0.75, 600, 3000, 1, 0.5, 40, 1.5}};
@@ -144,7 +144,7 @@ TEST_F(Products, TablesOfARunThatWasChangedOnTheWaySaySoInEveryRow) {
     EXPECT_THAT(test::read_text(folder.path() / "front.csv"), testing::Not(HasSubstr("changed")));
 }
 
-TEST_F(Products, TimeSeriesBalancesItsVolumes) {
+TEST_F(Products, time_series_balances_its_volumes) {
     const auto rows = rows_of(test::read_text(folder_->path() / "timeseries.csv"));
     ASSERT_EQ(rows.size(), result_->observation.timeseries.size() + 1);
     ASSERT_EQ(rows[0][7], "volume_balance_m3");

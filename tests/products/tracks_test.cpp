@@ -13,7 +13,7 @@ namespace {
 
 using test::TemporaryFolder;
 
-TEST(TracksOfARun, AreLinesOfSomeParticlesWithElevationAndTime) {
+TEST(TracksOfARun, are_lines_of_some_particles_with_elevation_and_time) {
     const TemporaryFolder folder;
     scene::Scene scene = test::sample_scene();
     scene.spec.outputs.tracks = 5;

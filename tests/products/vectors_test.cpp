@@ -17,7 +17,7 @@ namespace {
 using test::TemporaryFolder;
 using testing::StartsWith;
 
-TEST_F(Products, OutlinesHoldWhatIsDeepEnough) {
+TEST_F(Products, outlines_hold_what_is_deep_enough) {
     const GDALDatasetUniquePtr data(GDALDataset::Open(folder_->file("results.gpkg").c_str(), GDAL_OF_VECTOR));
     ASSERT_TRUE(data);
     const double level = scene_->spec.outputs.arrival_depth;
@@ -36,7 +36,7 @@ TEST_F(Products, OutlinesHoldWhatIsDeepEnough) {
     }
 }
 
-TEST_F(Products, EveryLayerHasAStyleForQgisInTheFile) {
+TEST_F(Products, every_layer_has_a_style_for_qgis_in_the_file) {
     const GDALDatasetUniquePtr data(GDALDataset::Open(folder_->file("results.gpkg").c_str(), GDAL_OF_VECTOR));
     ASSERT_TRUE(data);
     std::map<std::string, std::string> styles;
@@ -60,7 +60,7 @@ TEST_F(Products, EveryLayerHasAStyleForQgisInTheFile) {
     }
 }
 
-TEST_F(Products, OneFileOpensAllLayersInQgis) {
+TEST_F(Products, one_file_opens_all_layers_in_qgis) {
     const TemporaryFolder folder;
     scene::Scene scene = *scene_;
     scene.spec.scene.title = "Slope <A> & \"B\"";
@@ -97,7 +97,7 @@ TEST_F(Products, OneFileOpensAllLayersInQgis) {
     EXPECT_THAT(names, testing::Contains("Intensity"));
 }
 
-TEST_F(Products, QgisGetsTheGroundBelowTheMaps) {
+TEST_F(Products, qgis_gets_the_ground_below_the_maps) {
     const GDALDatasetUniquePtr data(GDALDataset::Open(folder_->file("terrain.tif").c_str()));
     ASSERT_TRUE(data);
     double to_world[6];
@@ -121,7 +121,7 @@ TEST_F(Products, QgisGetsTheGroundBelowTheMaps) {
     EXPECT_THAT(layers, testing::HasSubstr("zoomedInResampler=\"bilinear\""));
 }
 
-TEST_F(Products, QgisDoesNotOpenTablesWithoutFeatures) {
+TEST_F(Products, qgis_does_not_open_tables_without_features) {
     const TemporaryFolder folder;
     scene::Scene scene = *scene_;
     scene.buildings.clear();
@@ -139,7 +139,7 @@ TEST_F(Products, QgisDoesNotOpenTablesWithoutFeatures) {
     EXPECT_NE(data->GetLayerByName("buildings"), nullptr) << "the table is there";
 }
 
-TEST_F(Products, QgisShowsMapsOverTime) {
+TEST_F(Products, qgis_shows_maps_over_time) {
     scene::Scene scene = *scene_;
     const auto layers_with = [&](const std::vector<double>& times, const std::vector<std::string>& series) {
         const TemporaryFolder folder;
@@ -177,7 +177,7 @@ TEST_F(Products, QgisShowsMapsOverTime) {
     EXPECT_THAT(text, testing::HasSubstr("<start>2000-01-01T04:09:00.000Z</start>"));
 }
 
-TEST_F(Products, GeoPackageHoldsBuildingsReleasesPathAndMarks) {
+TEST_F(Products, geopackage_holds_buildings_releases_path_and_marks) {
     const std::string file = folder_->file("results.gpkg");
     const auto buildings = read_polygons(file, "buildings", scene_->crs);
     ASSERT_TRUE(buildings.ok()) << buildings.error().message;
@@ -207,7 +207,7 @@ TEST_F(Products, GeoPackageHoldsBuildingsReleasesPathAndMarks) {
     EXPECT_EQ(data->GetLayerByName("zoom"), nullptr);
 }
 
-TEST_F(Products, GeoPackageHoldsGaugesAndTheBoundaryOfAZoom) {
+TEST_F(Products, geopackage_holds_gauges_and_the_boundary_of_a_zoom) {
     run::RunResult result = *result_;
     observe::GaugeRecord gully{.gauge = {"gully", {824200, 825550}, 121}};
     gully.arrival_time = 14;

@@ -51,7 +51,7 @@ class GlbOfARun : public ViewOfARun {
     }
 };
 
-TEST_F(GlbOfARun, ShowsOneFrameOfTheDebrisAtATimeAndTheDepositLast) {
+TEST_F(GlbOfARun, shows_one_frame_of_the_debris_at_a_time_and_the_deposit_last) {
     const geo::GltfFile glb = open();
     const auto with = [](const char* frame) { return std::vector<std::string>{"terrain", "structures", frame}; };
     EXPECT_EQ(seen_at(glb, 0), with("debris at 0 s"));
@@ -67,7 +67,7 @@ TEST_F(GlbOfARun, ShowsOneFrameOfTheDebrisAtATimeAndTheDepositLast) {
     EXPECT_EQ(at_rest, with("debris at 2.5 s")) << "programs that play no animation show the deposit";
 }
 
-TEST_F(GlbOfARun, LaysDebrisOnTheGroundAndHousesInIt) {
+TEST_F(GlbOfARun, lays_debris_on_the_ground_and_houses_in_it) {
     const geo::GltfFile glb = open();
     const LocalFrame& frame = scene.terrain.frame();
     const auto ground_below = [&](double x, double z) {
@@ -101,7 +101,7 @@ TEST_F(GlbOfARun, LaysDebrisOnTheGroundAndHousesInIt) {
     EXPECT_EQ(walls.count, 5 * (4 * 6 + 6)) << "five houses of four walls and a roof";
 }
 
-TEST_F(GlbOfARun, FacesAreSeenFromOutside) {
+TEST_F(GlbOfARun, faces_are_seen_from_outside) {
     const geo::GltfFile glb = open();
     for (std::size_t mesh = 0; mesh < glb.root()["meshes"].size(); ++mesh) {
         const auto points = attribute(glb, mesh, "POSITION"), normals = attribute(glb, mesh, "NORMAL");
@@ -130,7 +130,7 @@ TEST_F(GlbOfARun, FacesAreSeenFromOutside) {
     }
 }
 
-TEST_F(GlbOfARun, StatesItsShiftAndItsBounds) {
+TEST_F(GlbOfARun, states_its_shift_and_its_bounds) {
     const geo::GltfFile glb = open();
     const Json& about = glb.root()["asset"]["extras"];
     EXPECT_DOUBLE_EQ(about["origin_m"][0], scene.terrain.frame().origin.x);
@@ -151,7 +151,7 @@ TEST_F(GlbOfARun, StatesItsShiftAndItsBounds) {
     }
 }
 
-TEST_F(GlbOfARun, TilesetPlacesItOnTheGlobe) {
+TEST_F(GlbOfARun, tileset_places_it_on_the_globe) {
     scene.spec.outputs.geoid_height = -2.5;
     const Status status = write({"3dtiles"});
     ASSERT_TRUE(status.ok()) << status.error().message;

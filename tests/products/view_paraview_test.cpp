@@ -14,7 +14,7 @@ std::size_t number_in(const std::string& text, const std::string& attribute) {
     return std::regex_search(text, match, std::regex(attribute + "=\"(\\d+)\"")) ? std::stoul(match[1]) : 0;
 }
 
-TEST_F(ViewOfARun, ParaViewHasGroundHousesAndTheSurfaceInOneFrame) {
+TEST_F(ViewOfARun, paraview_has_ground_houses_and_the_surface_in_one_frame) {
     const Status status = write({"paraview"});
     ASSERT_TRUE(status.ok()) << status.error().message;
     std::set<std::string> files;
@@ -41,7 +41,7 @@ TEST_F(ViewOfARun, ParaViewHasGroundHousesAndTheSurfaceInOneFrame) {
     EXPECT_THAT(test::read_text(file("paraview/surface.pvd")), HasSubstr("timestep=\"2.5\""));
 }
 
-TEST_F(ViewOfARun, ParaViewScriptIsPythonWithTheRangeOfTheWholeRun) {
+TEST_F(ViewOfARun, paraview_script_is_python_with_the_range_of_the_whole_run) {
     ASSERT_TRUE(write({"paraview"}).ok());
     const std::string script = test::read_text(file("paraview/run.py"));
     EXPECT_THAT(script, HasSubstr("WRITTEN_TO = \"/home/somebody's \\\"runs\\\"/series/paraview\""));
@@ -55,7 +55,7 @@ TEST_F(ViewOfARun, ParaViewScriptIsPythonWithTheRangeOfTheWholeRun) {
     EXPECT_EQ(std::system(command.c_str()), 0);
 }
 
-TEST_F(ViewOfARun, NeedsNoDebris) {
+TEST_F(ViewOfARun, needs_no_debris) {
     Grid<float>& peak = result.observation.maps.peak_depth;
     std::fill(peak.values.begin(), peak.values.end(), std::numeric_limits<float>::quiet_NaN());
     scene.spec.outputs.series = {"gltf", "3dtiles", "usd", "paraview"};

@@ -15,7 +15,7 @@ class UsdaOfARun : public ViewOfARun {
     }
 };
 
-TEST_F(UsdaOfARun, IsInMetresWithZUpAndStatesItsShift) {
+TEST_F(UsdaOfARun, is_in_metres_with_z_up_and_states_its_shift) {
     scene.spec.scene.title = "A \"quoted\" title,\nof two lines";
     const UsdaReader usd = read();
     auto layer = usd.layer_metadata;
@@ -28,7 +28,7 @@ TEST_F(UsdaOfARun, IsInMetresWithZUpAndStatesItsShift) {
     EXPECT_EQ(layer["customLayerData.reference_system"].text, scene.crs.label());
 }
 
-TEST_F(UsdaOfARun, HasEveryHouseByItsName) {
+TEST_F(UsdaOfARun, has_every_house_by_its_name) {
     scene.buildings[1].name = "21 A/ü";
     scene.buildings[2].name = "House 38";
     const UsdaReader usd = read();
@@ -40,7 +40,7 @@ TEST_F(UsdaOfARun, HasEveryHouseByItsName) {
     EXPECT_NEAR(all["/Run/Structures/House_38.talus:peak_impact_pressure_kPa"].number(), 38.4, 1e-6);
 }
 
-TEST_F(UsdaOfARun, MeshesNameTheirOwnPoints) {
+TEST_F(UsdaOfARun, meshes_name_their_own_points) {
     const UsdaReader usd = read();
     auto all = usd.attributes;
     for (const auto& [path, kind] : usd.types) {
@@ -55,7 +55,7 @@ TEST_F(UsdaOfARun, MeshesNameTheirOwnPoints) {
     }
 }
 
-TEST_F(UsdaOfARun, HasTheParticlesOverTimeInTheOrderOfTheirNumbers) {
+TEST_F(UsdaOfARun, has_the_particles_over_time_in_the_order_of_their_numbers) {
     const UsdaReader usd = read();
     auto all = usd.attributes;
     const auto& points = all["/Run/Debris.points"].samples;
@@ -75,7 +75,7 @@ TEST_F(UsdaOfARun, HasTheParticlesOverTimeInTheOrderOfTheirNumbers) {
     EXPECT_GT(colours[1].entries[1].number(), colours[0].entries[1].number()) << "faster is darker";
 }
 
-TEST_F(UsdaOfARun, OfTheGridHasPointsOnTheSurface) {
+TEST_F(UsdaOfARun, of_the_grid_has_points_on_the_surface) {
     const UsdaReader usd = read(false);
     auto all = usd.attributes;
     const auto& points = all["/Run/Debris.points"].samples;
@@ -84,7 +84,7 @@ TEST_F(UsdaOfARun, OfTheGridHasPointsOnTheSurface) {
     EXPECT_EQ(usd.types.count("/Run/Debris.ids"), 0U);
 }
 
-TEST(UsdaReader, IsStrict) {
+TEST(UsdaReader, is_strict) {
     EXPECT_NO_THROW(UsdaReader("#usda 1.0\ndef Mesh \"A\"\n{\n    int[] a = [1, 2]\n}\n"));
     for (const char* bad :
          {"#usda 1.0\ndef Mesh \"A\"\n{\n    int[] a = [1 2]\n}\n", "def Mesh \"A\" {}", "#usda 1.0\ndef Mesh \"A\" {",

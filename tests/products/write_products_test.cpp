@@ -17,7 +17,7 @@ using test::TemporaryFolder;
 using testing::HasSubstr;
 using testing::StartsWith;
 
-TEST_F(Products, FolderHoldsWhatItShouldAndNothingElse) {
+TEST_F(Products, folder_holds_what_it_should_and_nothing_else) {
     std::vector<std::string> names;
     for (const auto& entry : std::filesystem::directory_iterator(folder_->path())) {
         names.push_back(entry.path().filename());
@@ -31,7 +31,7 @@ TEST_F(Products, FolderHoldsWhatItShouldAndNothingElse) {
                     "structures_over_time.csv", "terrain.qml", "terrain.tif", "timeseries.csv"));
 }
 
-TEST_F(Products, PartialResultSaysSoEverywhere) {
+TEST_F(Products, partial_result_says_so_everywhere) {
     const TemporaryFolder folder;
     run::RunResult result = *result_;
     result.status = run::RunStatus::fault;
@@ -46,7 +46,7 @@ TEST_F(Products, PartialResultSaysSoEverywhere) {
     EXPECT_THAT(data->GetRasterBand(1)->GetDescription(), HasSubstr("partial result: fault"));
 }
 
-TEST_F(Products, RunWithoutDebrisPathOrBuildingsIsWrittenToo) {
+TEST_F(Products, run_without_debris_path_or_buildings_is_written_too) {
     const TemporaryFolder folder;
     scene::Scene scene = *scene_;
     scene.buildings.clear();
@@ -63,7 +63,7 @@ TEST_F(Products, RunWithoutDebrisPathOrBuildingsIsWrittenToo) {
     EXPECT_TRUE(json::accept(test::read_text(folder.path() / "manifest.json")));
 }
 
-TEST_F(Products, FullDiskIsAnErrorThatNamesTheFile) {
+TEST_F(Products, full_disk_is_an_error_that_names_the_file) {
     // In a child, since the limit on file sizes holds for the whole process.
     const TemporaryFolder folder;
     for (const rlim_t limit : {500, 2000, 20000}) {

@@ -12,7 +12,7 @@
 namespace talus::report {
 namespace {
 
-TEST(Intensity, SwissDebrisFlowsAreHighWhereDeepAndFastAndElseMedium) {
+TEST(Intensity, swiss_debris_flows_are_high_where_deep_and_fast_and_else_medium) {
     const IntensityGuideline& g = intensity_guideline(params::GuidelineChoice::swiss_debris_flow);
     EXPECT_EQ(g.class_of(1.01, 1.01), 2);
     EXPECT_EQ(g.class_of(1, 9), 1) << "not deep enough";
@@ -23,7 +23,7 @@ TEST(Intensity, SwissDebrisFlowsAreHighWhereDeepAndFastAndElseMedium) {
     EXPECT_EQ(g.classes.back().name, "high");
 }
 
-TEST(Intensity, SwissFloodsGoByDepthOrItsProductWithSpeed) {
+TEST(Intensity, swiss_floods_go_by_depth_or_its_product_with_speed) {
     const IntensityGuideline& g = intensity_guideline(params::GuidelineChoice::swiss_flood);
     EXPECT_EQ(g.class_of(0.5, 1), 1);
     EXPECT_EQ(g.class_of(0.51, 0), 2);
@@ -32,7 +32,7 @@ TEST(Intensity, SwissFloodsGoByDepthOrItsProductWithSpeed) {
     EXPECT_EQ(g.class_of(0.4, 5.1), 3);
 }
 
-TEST(Intensity, TheVenezuelanClassesLeaveThinDebrisOut) {
+TEST(Intensity, the_venezuelan_classes_leave_thin_debris_out) {
     const IntensityGuideline& g = intensity_guideline(params::GuidelineChoice::garcia_2003);
     EXPECT_EQ(g.class_of(0.2, 3), 0);
     EXPECT_EQ(g.class_of(0.3, 0.6), 1);
@@ -41,7 +41,7 @@ TEST(Intensity, TheVenezuelanClassesLeaveThinDebrisOut) {
     EXPECT_EQ(g.class_of(1.1, 0), 3);
 }
 
-TEST(Intensity, EveryGuidelineSaysWhereItIsFromAndGetsDarkerWithSeverity) {
+TEST(Intensity, every_guideline_says_where_it_is_from_and_gets_darker_with_severity) {
     const params::Parameter& key = params::parameter_of("outputs", "intensity_guideline");
     for (std::size_t k = 0; k < key.choices.size(); ++k) {
         const IntensityGuideline& g = intensity_guideline(static_cast<params::GuidelineChoice>(k));
@@ -53,7 +53,7 @@ TEST(Intensity, EveryGuidelineSaysWhereItIsFromAndGetsDarkerWithSeverity) {
     }
 }
 
-TEST(Intensity, IsMappedWhereDebrisArrivedAndOnlyThere) {
+TEST(Intensity, is_mapped_where_debris_arrived_and_only_there) {
     const float none = std::nanf("");
     const GridGeometry cells{0, 0, 2, 4, 1};
     observe::HazardMaps maps;
@@ -68,7 +68,7 @@ TEST(Intensity, IsMappedWhereDebrisArrivedAndOnlyThere) {
     EXPECT_TRUE(std::isnan(map.values[3]));
 }
 
-TEST(Intensity, IsALayerOfTheReportWithItsClassesInWords) {
+TEST(Intensity, is_a_layer_of_the_report_with_its_classes_in_words) {
     scene::Scene scene = test::sample_scene();
     const run::RunResult result = test::sample_result(scene);
     const report::Json data = report::intensity(scene, result);

@@ -12,7 +12,7 @@ namespace {
 
 using test::Sample;
 
-TEST(ReportMap, ShowsWhereDebrisCameTheReleaseAndTheBuildingsHit) {
+TEST(ReportMap, shows_where_debris_came_the_release_and_the_buildings_hit) {
     const Sample s;
     const report::MapFrame frame = report::map_frame(s.scene, report::map_content(s.scene, s.result));
     const Extent terrain = s.scene.terrain.elevation().geometry.extent();
@@ -25,7 +25,7 @@ TEST(ReportMap, ShowsWhereDebrisCameTheReleaseAndTheBuildingsHit) {
     EXPECT_LT(frame.y(frame.area.y_max), frame.y(frame.area.y_min));  // north is up
 }
 
-TEST(ReportMap, AWideTerrainIsCroppedToTheEvent) {
+TEST(ReportMap, a_wide_terrain_is_cropped_to_the_event) {
     Sample s;
     Grid<float> wide(GridGeometry{test::SampleValley::east - 2000, test::SampleValley::north - 2000, 20, 220, 220},
                      50.0F);
@@ -36,7 +36,7 @@ TEST(ReportMap, AWideTerrainIsCroppedToTheEvent) {
     EXPECT_LT(frame.area.height(), 400);
 }
 
-TEST(ReportMap, OfAZoomShowsItsAreaAndBoundary) {
+TEST(ReportMap, of_a_zoom_shows_its_area_and_boundary) {
     Sample s;
     const Extent whole = map_frame(s.scene, map_content(s.scene, s.result)).area;
     run::ZoomRecord zoom;
@@ -53,7 +53,7 @@ TEST(ReportMap, OfAZoomShowsItsAreaAndBoundary) {
     EXPECT_NE(drawn.find("Boundary of the zoom"), std::string::npos);
 }
 
-TEST(ReportMap, ShowsGaugesAndWithoutAPathNoObservations) {
+TEST(ReportMap, shows_gauges_and_without_a_path_no_observations) {
     Sample s;
     const auto drawn = [&] {
         const auto figures = map_figures(s.scene, map_content(s.scene, s.result));
@@ -69,7 +69,7 @@ TEST(ReportMap, ShowsGaugesAndWithoutAPathNoObservations) {
     EXPECT_EQ(drawn().find("Field observation"), std::string::npos);
 }
 
-TEST(ReportMap, ShowsCrossSectionsWithTheirNames) {
+TEST(ReportMap, shows_cross_sections_with_their_names) {
     Sample s;
     const auto drawn = [&] {
         const auto figures = map_figures(s.scene, map_content(s.scene, s.result));
@@ -87,7 +87,7 @@ TEST(ReportMap, ShowsCrossSectionsWithTheirNames) {
     EXPECT_EQ(map.find(">far away</text>"), std::string::npos) << "its middle is not on the map";
 }
 
-TEST(ReportMap, CallsImpactsByTheirPressure) {
+TEST(ReportMap, calls_impacts_by_their_pressure) {
     observe::BuildingImpact b;
     b.peak_impact_pressure = 50e3;
     EXPECT_EQ(report::impact_class(b), 0);  // not hit
@@ -99,7 +99,7 @@ TEST(ReportMap, CallsImpactsByTheirPressure) {
     EXPECT_EQ(report::impact_class(b), 1);
 }
 
-TEST(ReportRelief, SlopesFacingNorthWestAreBrighterThanThoseFacingSouthEast) {
+TEST(ReportRelief, slopes_facing_north_west_are_brighter_than_those_facing_south_east) {
     Grid<float> ridge(GridGeometry{0, 0, 1, 40, 40});
     for (int r = 0; r < 40; ++r) {
         for (int c = 0; c < 40; ++c) ridge.at(c, r) = static_cast<float>(20 - 0.5 * std::abs(c - r));
@@ -109,7 +109,7 @@ TEST(ReportRelief, SlopesFacingNorthWestAreBrighterThanThoseFacingSouthEast) {
     EXPECT_GT(grey(10, 10), grey(30, 30) + 40);  // picture rows run from north to south
 }
 
-TEST(ReportRelief, NothingIsInterpolatedFarFromData) {
+TEST(ReportRelief, nothing_is_interpolated_far_from_data) {
     Grid<float> grid(GridGeometry{0, 0, 1, 4, 4}, std::numeric_limits<float>::quiet_NaN());
     grid.at(1, 1) = 3;
     EXPECT_NEAR(report::interpolate(grid, {1.6, 1.6}), 3, 1e-6);

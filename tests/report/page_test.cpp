@@ -15,14 +15,14 @@ using ::testing::ElementsAre;
 
 using test::has;
 
-TEST(ReportColour, RampsFallEvenlyInLightness) {
+TEST(ReportColour, ramps_fall_evenly_in_lightness) {
     const report::Ramp ramp{205, 0.05, 268, 0.15, 0.90, 0.28};
     for (int k = 0; k <= 10; ++k) {
         EXPECT_NEAR(report::lightness(ramp.at(k / 10.0)), 0.90 - 0.062 * k, 0.01) << k;
     }
 }
 
-TEST(ReportColour, ClassesEndAboveTheLargestValue) {
+TEST(ReportColour, classes_end_above_the_largest_value) {
     const report::Ramp ramp{205, 0.05, 268, 0.15};
     EXPECT_THAT(report::fixed_classes({0, 0.5, 1, 2, 5}, 1.5, ramp).breaks, ElementsAre(0, 0.5, 1));
     EXPECT_THAT(report::even_classes(38, ramp).breaks, ElementsAre(0, 5, 10, 15, 20, 25, 30, 35));
@@ -33,7 +33,7 @@ TEST(ReportColour, ClassesEndAboveTheLargestValue) {
     EXPECT_EQ(classes.of(std::numeric_limits<double>::quiet_NaN()), -1);
 }
 
-TEST(ReportText, NumbersReadAsAnEngineerPrintsThem) {
+TEST(ReportText, numbers_read_as_an_engineer_prints_them) {
     EXPECT_EQ(report::fixed(824262.04, 1), "824\u202f262.0");
     EXPECT_EQ(report::fixed(1999, 0), "1999");
     EXPECT_EQ(report::fixed(-0.26, 1), "−0.3");
@@ -44,12 +44,12 @@ TEST(ReportText, NumbersReadAsAnEngineerPrintsThem) {
     EXPECT_EQ(report::coordinate(12.50), "12.5");
 }
 
-TEST(ReportText, ShortenedNamesKeepWholeCharacters) {
+TEST(ReportText, shortened_names_keep_whole_characters) {
     EXPECT_EQ(report::shortened("Zürich", 9), "Zürich");
     EXPECT_EQ(report::shortened("Zürich", 2), "Z…");
 }
 
-TEST(ReportPlot, LinesLeaveGapsWhereThereIsNoValue) {
+TEST(ReportPlot, lines_leave_gaps_where_there_is_no_value) {
     report::Plot plot(0, 0, 100, 100, {0, 4}, {0, 1});
     const std::vector<double> x = {0, 1, 2, 3, 4}, y = {0, 1, observe::never, 1, 0};
     plot.line(x, y, "series");
@@ -58,7 +58,7 @@ TEST(ReportPlot, LinesLeaveGapsWhereThereIsNoValue) {
     EXPECT_TRUE(has(svg.str(), "d=\"M0 100L25 0M75 0L100 100\""));
 }
 
-TEST(ReportChart, IsTheSameAfterItWasWrittenAndRead) {
+TEST(ReportChart, is_the_same_after_it_was_written_and_read) {
     report::Plot plot(66, 20, 400, 200, {0, 4}, {-1, 1});
     plot.axes("time, s", "height <m>");
     const std::vector<double> x = {0, 1, 2, 3, 4}, y = {0, 1, observe::never, 1, 0}, zero(5, 0);
@@ -96,7 +96,7 @@ void expect_documented(const report::Json& json, int& tables, int& charts) {
     for (const auto& entry : json) expect_documented(entry, tables, charts);
 }
 
-TEST(Page, FillsTemplatesWithTextNumbersAndFigures) {
+TEST(Page, fills_templates_with_text_numbers_and_figures) {
     const report::Json data = {{"name", "<a & b>"},  {"width", 1234.5678}, {"none", nullptr},      {"empty", ""},
                                {"list", {"x", "y"}}, {"large", 12345.6},   {"nan", observe::never}};
     EXPECT_EQ(report::render("{{name}}|{{{name}}}", data), "&lt;a &amp; b&gt;|<a & b>");
@@ -107,7 +107,7 @@ TEST(Page, FillsTemplatesWithTextNumbersAndFigures) {
     EXPECT_EQ(report::render("{{figure}} {{figure}}", data), "1 2");
 }
 
-TEST(Page, DrawsTablesWithTheirMarksAndGaps) {
+TEST(Page, draws_tables_with_their_marks_and_gaps) {
     report::Json rows = report::table({{"name", "Name <b>", ""}, {"depth_m", "Depth", "m", "f2", "", "none"}}, "odds");
     rows["rows"].push_back(
         {{"name", {{"value", "a&b"}, {"mark", "hit-2"}, {"note", "until 3 s"}}}, {"depth_m", 1.234}});
@@ -123,7 +123,7 @@ TEST(Page, DrawsTablesWithTheirMarksAndGaps) {
     }
 }
 
-TEST(ReportPlot, TicksAreRound) {
+TEST(ReportPlot, ticks_are_round) {
     const report::Ticks ticks = report::round_ticks({0, 12.2}, 5);
     EXPECT_THAT(ticks.values, ElementsAre(0, 2.5, 5, 7.5, 10));
     EXPECT_EQ(ticks.digits, 1);

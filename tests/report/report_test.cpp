@@ -18,7 +18,7 @@ using ::testing::ElementsAre;
 using test::has;
 using test::Sample;
 
-TEST(Report, IsOneSmallPageThatNamesNoOtherFile) {
+TEST(Report, is_one_small_page_that_names_no_other_file) {
     const std::string html = Sample().html();
     EXPECT_LT(html.size(), 3'000'000U);
     EXPECT_FALSE(has(html, "http://"));
@@ -33,7 +33,7 @@ TEST(Report, IsOneSmallPageThatNamesNoOtherFile) {
     }
 }
 
-TEST(Report, EscapesEveryTextOfTheScene) {
+TEST(Report, escapes_every_text_of_the_scene) {
     Sample s;
     const std::string evil = "<script>alert('1')</script>\"&";
     s.scene.spec.scene.title = evil + "title";
@@ -63,7 +63,7 @@ TEST(Report, EscapesEveryTextOfTheScene) {
     }
 }
 
-TEST(Report, SaysWhatStillMovedAtTheEnd) {
+TEST(Report, says_what_still_moved_at_the_end) {
     Sample s;
     observe::TimeSample& end = s.result.observation.timeseries.back();
     end.volume_moving = 12;
@@ -79,13 +79,13 @@ TEST(Report, SaysWhatStillMovedAtTheEnd) {
     EXPECT_EQ(still_moving(s.result)["greatest_speed_mps"], 0);
 }
 
-TEST(Report, ABraceInATitleIsNotTakenForATemplate) {
+TEST(Report, a_brace_in_a_title_is_not_taken_for_a_template) {
     Sample s;
     s.scene.spec.scene.title = "{{style}}";
     EXPECT_TRUE(has(s.html(), "<h1>{{style}}</h1>"));
 }
 
-TEST(Report, SaysReconstructionOnThePageAndOnEveryMap) {
+TEST(Report, says_reconstruction_on_the_page_and_on_every_map) {
     Sample s;
     const std::string with = s.html();
     EXPECT_TRUE(has(with, "banner reconstruction"));
@@ -97,7 +97,7 @@ TEST(Report, SaysReconstructionOnThePageAndOnEveryMap) {
     EXPECT_FALSE(has(without, "RECONSTRUCTION"));
 }
 
-TEST(Report, SaysPartialWithItsReason) {
+TEST(Report, says_partial_with_its_reason) {
     Sample s;
     EXPECT_FALSE(has(s.html(), "class=\"banner partial\""));
     s.result.status = run::RunStatus::fault;
@@ -125,7 +125,7 @@ std::string words_of(const std::string& html) {
     return text;
 }
 
-TEST(Report, HasOneVerdictBesideItsKeyFigures) {
+TEST(Report, has_one_verdict_beside_its_key_figures) {
     Sample s;
     const std::string good = s.html();
     EXPECT_TRUE(has(good, "<span class=\"status complete\">complete</span>"));
@@ -153,7 +153,7 @@ TEST(Report, HasOneVerdictBesideItsKeyFigures) {
     EXPECT_TRUE(has(s.html(), "lower <code>solver.time_step_s</code>"));
 }
 
-TEST(Report, OfADepthAveragedRunSaysNothingThatOnlyParticlesHave) {
+TEST(Report, of_a_depth_averaged_run_says_nothing_that_only_particles_have) {
     Sample s;
     s.scene.spec.observations[0].source = s.scene.spec.observations[1].source = "";
     const std::string particles = words_of(s.html());
@@ -197,7 +197,7 @@ TEST(Report, OfADepthAveragedRunSaysNothingThatOnlyParticlesHave) {
     }
 }
 
-TEST(Report, OfADepthAveragedRunSaysWhetherDebrisFlies) {
+TEST(Report, of_a_depth_averaged_run_says_whether_debris_flies) {
     Sample s;
     s.scene.spec.solver.model = params::ModelChoice::depth_averaged;
     s.result.grid_cell = 2.5;
@@ -208,7 +208,7 @@ TEST(Report, OfADepthAveragedRunSaysWhetherDebrisFlies) {
     EXPECT_FALSE(has(words, "does not leave the ground"));
 }
 
-TEST(Report, SaysThatDebrisLeftThePartOfTheTerrainThatASceneTakes) {
+TEST(Report, says_that_debris_left_the_part_of_the_terrain_that_a_scene_takes) {
     Sample s;
     s.result.observation.run_out.at_least = true;
     s.scene.spec.terrain.extent.reset();
@@ -219,7 +219,7 @@ TEST(Report, SaysThatDebrisLeftThePartOfTheTerrainThatASceneTakes) {
     EXPECT_FALSE(has(s.html(), "; debris left the terrain"));
 }
 
-TEST(Report, MissingVolumeIsNotCalledClosed) {
+TEST(Report, missing_volume_is_not_called_closed) {
     Sample s;
     EXPECT_TRUE(has(s.html(), "<strong>closed</strong>"));
     s.result.observation.timeseries.back().volume_deposited -= 0.25;
@@ -229,7 +229,7 @@ TEST(Report, MissingVolumeIsNotCalledClosed) {
     EXPECT_TRUE(has(html, "<b class=\"bad\">; 0.250 m³ missing</b>"));
 }
 
-TEST(Report, ComparesTheFrontWithEachObservation) {
+TEST(Report, compares_the_front_with_each_observation) {
     Sample s;
     s.result.observation.front = {{120, 14, 10, 9}, {122, 14.2, 12, 10}};
     const std::string html = s.html();
@@ -237,7 +237,7 @@ TEST(Report, ComparesTheFrontWithEachObservation) {
     EXPECT_TRUE(has(html, "<b>not reached</b>"));  // 217 m lies beyond
 }
 
-TEST(Report, ListsBuildingsByPressureAndMarksAssumedHeights) {
+TEST(Report, lists_buildings_by_pressure_and_marks_assumed_heights) {
     Sample s;
     const report::Json buildings = report::buildings(s.scene, s.result);
     std::vector<std::string> names;
@@ -247,13 +247,13 @@ TEST(Report, ListsBuildingsByPressureAndMarksAssumedHeights) {
     EXPECT_TRUE(has(s.html(), "6.0<sup>a</sup>"));
 }
 
-TEST(Report, SaysWhenNoBuildingWasHit) {
+TEST(Report, says_when_no_building_was_hit) {
     Sample s;
     for (observe::BuildingImpact& b : s.result.observation.buildings) b.hit = false;
     EXPECT_TRUE(has(s.html(), "No building was hit."));
 }
 
-TEST(Report, ShowsThirtyOfManyBuildingsAndCountsTheRest) {
+TEST(Report, shows_thirty_of_many_buildings_and_counts_the_rest) {
     Sample s;
     s.scene.buildings.clear();
     s.result.observation.buildings.clear();
@@ -272,7 +272,7 @@ TEST(Report, ShowsThirtyOfManyBuildingsAndCountsTheRest) {
     EXPECT_TRUE(has(s.html(), "first 30 of 45 buildings"));
 }
 
-TEST(Report, PrintsEveryParameterWithItsUnit) {
+TEST(Report, prints_every_parameter_with_its_unit) {
     Sample s;
     const std::string html = s.html();
     for (const params::Section& section : params::scene_sections()) {
@@ -298,7 +298,7 @@ void expect_numbered_figures(const std::string& html) {
     EXPECT_GT(count, 5);
 }
 
-TEST(Report, DrawsZonesAndBedWithTheirValuesWhereThereAreSome) {
+TEST(Report, draws_zones_and_bed_with_their_values_where_there_are_some) {
     Sample sample;
     const std::string without = sample.html();
     EXPECT_FALSE(has(without, "id=\"zones\""));
@@ -330,7 +330,7 @@ TEST(Report, DrawsZonesAndBedWithTheirValuesWhereThereAreSome) {
     expect_numbered_figures(html);
 }
 
-TEST(Report, DrawsTheDensityOfAnInflowWhereItHasOne) {
+TEST(Report, draws_the_density_of_an_inflow_where_it_has_one) {
     Sample sample;
     sample.scene.inflows.push_back({"torrent", {0, 0}, {3, 0}, {{0, 5, 2}, {10, 5, 2}}});
     std::string html = sample.html();
@@ -347,7 +347,7 @@ TEST(Report, DrawsTheDensityOfAnInflowWhereItHasOne) {
     EXPECT_TRUE(has(html, "Their motion does not depend on it."));
 }
 
-TEST(Report, MarksInflowsOnItsMapsWithAnArrowWhereDebrisGoes) {
+TEST(Report, marks_inflows_on_its_maps_with_an_arrow_where_debris_goes) {
     Sample sample;
     const Extent ground = sample.scene.terrain.elevation().geometry.extent();
     const double x = (ground.x_min + ground.x_max) / 2, y = (ground.y_min + ground.y_max) / 2;
@@ -366,7 +366,7 @@ TEST(Report, MarksInflowsOnItsMapsWithAnArrowWhereDebrisGoes) {
     EXPECT_TRUE(has(html, ">Inflow</text>"));
 }
 
-TEST(Report, RendersARunInWhichNothingMoved) {
+TEST(Report, renders_a_run_in_which_nothing_moved) {
     Sample s;
     s.scene.buildings.clear();
     s.scene.spec.observations.clear();
@@ -379,7 +379,7 @@ TEST(Report, RendersARunInWhichNothingMoved) {
     for (const char* nan : {">nan", " nan", "\"nan", "Lnan", "Mnan"}) EXPECT_FALSE(has(html, nan)) << nan;
 }
 
-TEST(Report, DrawsTheDischargeThroughCrossSectionsOverTime) {
+TEST(Report, draws_the_discharge_through_cross_sections_over_time) {
     Sample s;
     EXPECT_FALSE(has(s.html(), "<h2>Cross-sections</h2>"));
     observe::DischargeRecord bridge{.section = {"bridge", {{824200, 825550}, {824220, 825550}}}};
@@ -403,7 +403,7 @@ TEST(Report, DrawsTheDischargeThroughCrossSectionsOverTime) {
     EXPECT_TRUE(has(words_of(s.html()), "No debris passed a cross-section."));
 }
 
-TEST(Report, DrawsDepthAndSpeedAtGaugesOverTime) {
+TEST(Report, draws_depth_and_speed_at_gauges_over_time) {
     Sample s;
     EXPECT_FALSE(has(s.html(), "<h2>Gauges</h2>"));
     observe::GaugeRecord gully{.gauge = {"gully", {824200, 825550}, 121}};
@@ -434,7 +434,7 @@ TEST(Report, DrawsDepthAndSpeedAtGaugesOverTime) {
     EXPECT_TRUE(has(words_of(s.html()), "No debris reached a gauge."));
 }
 
-TEST(Report, SaysWhatAZoomWasAndItsBalance) {
+TEST(Report, says_what_a_zoom_was_and_its_balance) {
     Sample s;
     EXPECT_FALSE(has(s.html(), "<h2>Zoom</h2>"));
     run::ZoomRecord zoom;
@@ -471,7 +471,7 @@ TEST(Report, SaysWhatAZoomWasAndItsBalance) {
     }
 }
 
-TEST(Results, HoldAllThatTheReportShows) {
+TEST(Results, hold_all_that_the_report_shows) {
     Sample s;
     s.result.observation.gauges = {{.gauge = {"mill", {824210, 825560}}, .peak_depth = 1}};
     s.result.zoom.emplace();

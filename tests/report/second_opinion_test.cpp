@@ -39,7 +39,7 @@ struct TwoModels {
     }
 };
 
-TEST(Differences, TheLargestIsNamedFirst) {
+TEST(Differences, the_largest_is_named_first) {
     TwoModels two;
     scale(two.grid.observation.maps.peak_speed, 2.65F);
     scale(two.grid.observation.maps.peak_pressure, 2.65F * 2.65F);
@@ -53,7 +53,7 @@ TEST(Differences, TheLargestIsNamedFirst) {
     EXPECT_THAT(two.differences().at(0), AllOf(StartsWith("Peak depth: "), HasSubstr("−90 %")));
 }
 
-TEST(Differences, AStructureHitInOneModelOnlyStandsBeforeAllElse) {
+TEST(Differences, a_structure_hit_in_one_model_only_stands_before_all_else) {
     TwoModels two;
     scale(two.grid.observation.maps.peak_speed, 2.65F);
     two.grid.observation.buildings[2].hit = false;
@@ -61,7 +61,7 @@ TEST(Differences, AStructureHitInOneModelOnlyStandsBeforeAllElse) {
                                                HasSubstr("House 12 only with particles")));
 }
 
-TEST(Differences, ASpikeOfOneCellChangesThePeakAndNotTheMedian) {
+TEST(Differences, a_spike_of_one_cell_changes_the_peak_and_not_the_median) {
     TwoModels two;
     observe::HazardMaps& maps = two.grid.observation.maps;
     *std::find_if(maps.peak_speed.values.begin(), maps.peak_speed.values.end(), [](float v) { return v > 0; }) = 120;
@@ -70,7 +70,7 @@ TEST(Differences, ASpikeOfOneCellChangesThePeakAndNotTheMedian) {
     EXPECT_THAT(first.substr(first.find("the median")), HasSubstr(", 0 %"));
 }
 
-TEST(Differences, AFrontAtTheEndOfTheScenesPathMayHaveGoneFarther) {
+TEST(Differences, a_front_at_the_end_of_the_scenes_path_may_have_gone_farther) {
     TwoModels two;
     const auto run_out = [&] {
         const auto all = two.differences();
@@ -87,14 +87,14 @@ TEST(Differences, AFrontAtTheEndOfTheScenesPathMayHaveGoneFarther) {
     EXPECT_THAT(run_out(), HasSubstr("the farthest deposit with particles lies beside the path"));
 }
 
-TEST(Differences, TheSameTwiceHasNone) {
+TEST(Differences, the_same_twice_has_none) {
     for (const std::string& sentence : TwoModels().differences()) {
         EXPECT_THAT(sentence, AllOf(Not(HasSubstr("differ most")), Not(HasSubstr("farthest apart")))) << sentence;
         EXPECT_EQ(sentence.find(" +"), std::string::npos) << sentence;
     }
 }
 
-TEST(SecondOpinionPage, HasSpeedAndPressureOfBothAndTheirDifferences) {
+TEST(SecondOpinionPage, has_speed_and_pressure_of_both_and_their_differences) {
     TwoModels two;
     scale(two.grid.observation.maps.peak_depth, 8);  // flows of up to 27 m
     const std::string page = two.page();
@@ -113,7 +113,7 @@ TEST(SecondOpinionPage, HasSpeedAndPressureOfBothAndTheirDifferences) {
                 report::greatest(two.particles.observation.maps.peak_pressure) / 1e3, 1e-6);
 }
 
-TEST(SecondOpinionPage, WarningsOfEitherRunStandOnIt) {
+TEST(SecondOpinionPage, warnings_of_either_run_stand_on_it) {
     TwoModels two;
     EXPECT_EQ(two.page().find("verdict-box beyond"), std::string::npos);
     two.grid.observation.energy.speed = 131;
@@ -126,7 +126,7 @@ TEST(SecondOpinionPage, WarningsOfEitherRunStandOnIt) {
     EXPECT_EQ(page.find("status complete"), std::string::npos) << "not in green";
 }
 
-TEST(SecondOpinionPage, TheScaleOfADifferenceFollowsTheData) {
+TEST(SecondOpinionPage, the_scale_of_a_difference_follows_the_data) {
     const auto limits = [](float factor) {
         TwoModels two;
         scale(two.grid.observation.maps.peak_depth, factor);
@@ -139,7 +139,7 @@ TEST(SecondOpinionPage, TheScaleOfADifferenceFollowsTheData) {
     EXPECT_EQ(limits(8), "20");
 }
 
-TEST(DifferenceClasses, AreAsWideBelowAsAboveAndGreyAroundNone) {
+TEST(DifferenceClasses, are_as_wide_below_as_above_and_grey_around_none) {
     const report::Classes classes = report::difference_classes(12);
     EXPECT_DOUBLE_EQ(classes.breaks.back(), 20);
     EXPECT_DOUBLE_EQ(classes.breaks[1], -20);

@@ -25,7 +25,7 @@ std::vector<std::string> keys_of(const report::Json& table) {
     return keys;
 }
 
-TEST(TitleBlock, IsThereWhereTheSceneStatesAnyOfItAndEscaped) {
+TEST(TitleBlock, is_there_where_the_scene_states_any_of_it_and_escaped) {
     Sample s;
     EXPECT_FALSE(has(s.html(), "class=\"title-block\""));
     const std::string evil = "<script>alert('1')</script>{{title}}\"&";
@@ -39,7 +39,7 @@ TEST(TitleBlock, IsThereWhereTheSceneStatesAnyOfItAndEscaped) {
     }
 }
 
-TEST(TitleBlock, LeavesOutWhatIsNotStatedAndIsPartOfTheResults) {
+TEST(TitleBlock, leaves_out_what_is_not_stated_and_is_part_of_the_results) {
     Sample s;
     s.scene.spec.report.client = "Village of Lower Talus";
     s.scene.spec.report.date = "2026-11-23";
@@ -54,7 +54,7 @@ TEST(TitleBlock, LeavesOutWhatIsNotStatedAndIsPartOfTheResults) {
     EXPECT_TRUE(report::results_head("talus results", Sample().scene)["report"].is_null());
 }
 
-TEST(NotSet, ListsDefaultsThatCarryTheResultUntilTheSceneSetsThem) {
+TEST(NotSet, lists_defaults_that_carry_the_result_until_the_scene_sets_them) {
     Sample s;
     const auto listed = [&] { return keys_of(report::not_set(s.scene, s.result)["table"]); };
     for (const char* key :
@@ -75,7 +75,7 @@ TEST(NotSet, ListsDefaultsThatCarryTheResultUntilTheSceneSetsThem) {
     EXPECT_THAT(listed(), Not(Contains("bed[0].erosion_rate_mps"))) << "of the other law";
 }
 
-TEST(NotSet, ListsTheThicknessThatFollowsFromAVolume) {
+TEST(NotSet, lists_the_thickness_that_follows_from_a_volume) {
     Sample s;
     s.scene.releases[0].spec = s.scene.spec.releases[0];
     const report::Json listed = report::not_set(s.scene, s.result)["table"];
@@ -83,7 +83,7 @@ TEST(NotSet, ListsTheThicknessThatFollowsFromAVolume) {
     EXPECT_TRUE(has(listed.dump(), "Thickness of head scarp, the same everywhere, from its volume"));
 }
 
-TEST(NotSet, LeavesBuildingsOutWhereNoneWasHit) {
+TEST(NotSet, leaves_buildings_out_where_none_was_hit) {
     Sample s;
     for (observe::BuildingImpact& b : s.result.observation.buildings) b.hit = false;
     const auto listed = keys_of(report::not_set(s.scene, s.result)["table"]);
@@ -91,7 +91,7 @@ TEST(NotSet, LeavesBuildingsOutWhereNoneWasHit) {
     EXPECT_THAT(listed, Not(Contains("outputs.impact_patch_edge_m")));
 }
 
-TEST(Defaults, AreFoldedAwayAndCounted) {
+TEST(Defaults, are_folded_away_and_counted) {
     Sample s;
     s.scene.given_keys = {"material.viscosity"};
     const report::Json results = report::run_results(s.scene, s.result, {});
@@ -104,7 +104,7 @@ TEST(Defaults, AreFoldedAwayAndCounted) {
     EXPECT_TRUE(has(s.html(), "<summary>" + std::to_string(folded.size()) + " keys at their defaults"));
 }
 
-TEST(Barriers, AreNoBuildingsInTheCounts) {
+TEST(Barriers, are_no_buildings_in_the_counts) {
     Sample s;
     observe::BuildingImpact wall;
     wall.name = "check dam";
@@ -124,7 +124,7 @@ TEST(Barriers, AreNoBuildingsInTheCounts) {
     EXPECT_EQ(results["barriers"]["table"]["rows"][0]["peak_impact_pressure_kPa"], 500);
 }
 
-TEST(MapScale, IsARoundRatioThatHoldsForThePrintedWidth) {
+TEST(MapScale, is_a_round_ratio_that_holds_for_the_printed_width) {
     for (const double metres : {37.0, 160.0, 410.0, 2900.0, 64000.0}) {
         report::MapFrame frame;
         frame.area = {0, 0, metres, 0.7 * metres};
@@ -143,7 +143,7 @@ TEST(MapScale, IsARoundRatioThatHoldsForThePrintedWidth) {
     EXPECT_TRUE(has(s.html(), ">1 : " + report::fixed(ratio, 0) + " printed on A4</text>"));
 }
 
-TEST(LocationMap, ShowsTheAreaOfTheMapsInAWiderTerrain) {
+TEST(LocationMap, shows_the_area_of_the_maps_in_a_wider_terrain) {
     Sample s;
     EXPECT_FALSE(has(s.html(), ">Location</h3>")) << "the maps show all of it";
     using V = test::SampleValley;

@@ -34,7 +34,7 @@ class WholeRun : public scene::SceneFolder {
     }
 };
 
-TEST_F(WholeRun, OnADeviceIsWithinTheLimitsOfConvergenceOfTheProcessor) {
+TEST_F(WholeRun, on_a_device_is_within_the_limits_of_convergence_of_the_processor) {
     const scene::Scene scene = on("cpu");
     const Result<RunResult> processor = run_scene(scene, {});
     ASSERT_TRUE(processor) << processor.error().message;
@@ -154,7 +154,7 @@ const char* const watched_scene =
     "resistance_Npm = 1000\n"
     "[[gauge]]\nname = \"bridge\"\nx_m = 824064\ny_m = 825100\n";
 
-TEST_F(WholeRun, OnADeviceObserversMeasureWhatTheyMeasureOnCopies) {
+TEST_F(WholeRun, on_a_device_observers_measure_what_they_measure_on_copies) {
     const std::string inflow = "[[inflow]]\nline_m = [[824045, 825095], [824045, 825105]]\nhydrograph = \"flow.csv\"\n";
     write_features("later.geojson", {rectangle(45, 108, 52, 118)});
     for (const bool own_densities : {false, true}) {
@@ -220,7 +220,7 @@ TEST_F(WholeRun, OnADeviceObserversMeasureWhatTheyMeasureOnCopies) {
     }
 }
 
-TEST_F(WholeRun, OnADeviceObserversGiveTheSameBitsOnAnyNumberOfThreads) {
+TEST_F(WholeRun, on_a_device_observers_give_the_same_bits_on_any_number_of_threads) {
     write_features("later.geojson", {rectangle(45, 108, 52, 118)});
     write_valley(watched_scene);
     const auto on = [&](const char* threads) {
@@ -238,7 +238,7 @@ TEST_F(WholeRun, OnADeviceObserversGiveTheSameBitsOnAnyNumberOfThreads) {
     }
 }
 
-TEST_F(WholeRun, OnADeviceAStepWithoutFramesCopiesNoParticles) {
+TEST_F(WholeRun, on_a_device_a_step_without_frames_copies_no_particles) {
     write_features("later.geojson", {rectangle(45, 108, 52, 118)});
     write_valley(watched_scene);
     const auto scene = scene::load_scene(folder / "scene.toml", {"solver.target_particle_count=6000"});
@@ -270,7 +270,7 @@ TEST_F(WholeRun, OnADeviceAStepWithoutFramesCopiesNoParticles) {
     EXPECT_GE(simulation.device_traffic().to_host - before, 58ULL * count) << "a frame has all of them";
 }
 
-TEST_F(WholeRun, OnACardThatIsNotThereIsRefusedInOneLine) {
+TEST_F(WholeRun, on_a_card_that_is_not_there_is_refused_in_one_line) {
     if (sim::check_backend(params::BackendChoice::cuda)) GTEST_SKIP() << "there is a card";
     const Result<RunResult> result = run_scene(on("cuda"), {});
     ASSERT_FALSE(result);

@@ -46,7 +46,7 @@ class Compare : public testing::Test {
     std::vector<VariantRun> runs;
 };
 
-TEST_F(Compare, ChangesArePercentOfTheBase) {
+TEST_F(Compare, changes_are_percent_of_the_base) {
     add("finer", observed(10.4, 11.7, 209));
     const Comparison c = compared();
     ASSERT_EQ(c.quantities.size(), 8U);
@@ -69,7 +69,7 @@ TEST_F(Compare, ChangesArePercentOfTheBase) {
     EXPECT_EQ(c.rows[0].verdict(), Verdict::pass);
 }
 
-TEST_F(Compare, VariedInputsAreComparedByTheirPeaksToo) {
+TEST_F(Compare, varied_inputs_are_compared_by_their_peaks_too) {
     const auto maps = [](float depth, float speed, float pressure) {
         observe::HazardMaps all;
         for (auto [map, value] :
@@ -91,7 +91,7 @@ TEST_F(Compare, VariedInputsAreComparedByTheirPeaksToo) {
     EXPECT_NEAR(changes[7].percent, 100, 1e-6);
 }
 
-TEST_F(Compare, AChangeAboveTheLimitEitherWayFails) {
+TEST_F(Compare, a_change_above_the_limit_either_way_fails) {
     add("faster", observed(10.51, 12, 200));
     add("slower", observed(9.49, 12, 200));
     add("same", observed(10, 12, 200));
@@ -103,7 +103,7 @@ TEST_F(Compare, AChangeAboveTheLimitEitherWayFails) {
     EXPECT_EQ(c.verdict_text(), "not converged: 2 of 24 changes above their limit");
 }
 
-TEST_F(Compare, WhatOnlyOneOfTheTwoReachesFails) {
+TEST_F(Compare, what_only_one_of_the_two_reaches_fails) {
     observe::Observation stopped = observed(10, observe::never, 200);
     stopped.front.clear();
     add("stops before", stopped);
@@ -119,7 +119,7 @@ TEST_F(Compare, WhatOnlyOneOfTheTwoReachesFails) {
     EXPECT_EQ(compared().rows.at(0).changes[0].verdict, Verdict::fail);
 }
 
-TEST_F(Compare, WhatNeitherReachesIsNotJudged) {
+TEST_F(Compare, what_neither_reaches_is_not_judged) {
     scene.spec.observations[0].chainage = 280;
     add("finer", observed(10, 12, 200));
     const Comparison c = compared();
@@ -128,7 +128,7 @@ TEST_F(Compare, WhatNeitherReachesIsNotJudged) {
     EXPECT_EQ(c.converged(), Answer::yes);
 }
 
-TEST_F(Compare, WithoutABuildingHitTheFrontsArrivalLateOnItsWayCounts) {
+TEST_F(Compare, without_a_building_hit_the_fronts_arrival_late_on_its_way_counts) {
     base.observation = observed(10, observe::never, 200);
     observe::Observation late = observed(10, observe::never, 200);
     late.front.back().arrival_time = 22;
@@ -138,7 +138,7 @@ TEST_F(Compare, WithoutABuildingHitTheFrontsArrivalLateOnItsWayCounts) {
     EXPECT_GT(c.rows[0].changes[1].percent, 5);
 }
 
-TEST_F(Compare, WithoutFlowPathObservationAndHitOnlyRunOutIsMeasured) {
+TEST_F(Compare, without_flow_path_observation_and_hit_only_run_out_is_measured) {
     scene.flow_path = {};
     scene.spec.observations.clear();
     observe::Observation bare = observed(10, observe::never, 200);
@@ -159,7 +159,7 @@ TEST_F(Compare, WithoutFlowPathObservationAndHitOnlyRunOutIsMeasured) {
     EXPECT_THAT(compared().verdict_text(), HasSubstr("nothing could be measured"));
 }
 
-TEST_F(Compare, AMissingRunLeavesConvergenceOpenUnlessAChangeIsTooLarge) {
+TEST_F(Compare, a_missing_run_leaves_convergence_open_unless_a_change_is_too_large) {
     add("finer", observed(10, 12, 200));
     add_missing();
     EXPECT_EQ(compared().converged(), Answer::unknown);
@@ -170,7 +170,7 @@ TEST_F(Compare, AMissingRunLeavesConvergenceOpenUnlessAChangeIsTooLarge) {
     EXPECT_EQ(compared().verdict_text(), "not converged: 1 of 16 changes above its limit, 1 of 3 runs missing");
 }
 
-TEST_F(Compare, EachResultHasItsOwnLimit) {
+TEST_F(Compare, each_result_has_its_own_limit) {
     observe::Observation finer = observed(10, 12, 200);
     finer.deposit = {549, 1.36};
     finer.buildings[1].peak_force *= 1.14;
@@ -190,7 +190,7 @@ TEST_F(Compare, EachResultHasItsOwnLimit) {
     EXPECT_TRUE(fails([](observe::Observation& o) { o.buildings[1].peak_impact_pressure = 2.54e4; }));
 }
 
-TEST_F(Compare, BuildingsHitMustBeTheSameButForATouch) {
+TEST_F(Compare, buildings_hit_must_be_the_same_but_for_a_touch) {
     observe::Observation other = observed(10, 12, 200);
     other.buildings[0].hit = true;
     other.buildings[0].first_hit_time = 13;
@@ -203,7 +203,7 @@ TEST_F(Compare, BuildingsHitMustBeTheSameButForATouch) {
     EXPECT_EQ(compared().converged(), Answer::no);
 }
 
-TEST_F(Compare, TwoObservationsAtOnePlaceAreOneQuantity) {
+TEST_F(Compare, two_observations_at_one_place_are_one_quantity) {
     scene.spec.observations.push_back({"again", 100, 8, {}, ""});
     add("finer", observed(10, 12, 200));
     EXPECT_EQ(compared().quantities.size(), 8U);

@@ -43,7 +43,7 @@ class Discharge : public scene::SceneFolder, public testing::WithParamInterface<
     }
 };
 
-TEST_P(Discharge, IsTheVolumeReleasedBelowItAndNothingAboveIt) {
+TEST_P(Discharge, is_the_volume_released_below_it_and_nothing_above_it) {
     write_features("release.geojson", {rectangle(40, 90, 60, 110)});
     const scene::Scene scene = loaded(
         "[[release]]\nfile = \"release.geojson\"\nthickness_m = 1\n" + section("below", 100) + section("above", 15) +
@@ -71,7 +71,7 @@ TEST_P(Discharge, IsTheVolumeReleasedBelowItAndNothingAboveIt) {
     EXPECT_EQ(below.rows.size(), static_cast<std::size_t>(std::ceil(result->simulated_time))) << "one a second";
 }
 
-TEST_P(Discharge, OfASteadyInflowIsItsHydrograph) {
+TEST_P(Discharge, of_a_steady_inflow_is_its_hydrograph) {
     write("flow.csv", "time_s,discharge_m3ps,velocity_mps\n0,20,5\n30,20,5\n");
     const scene::Scene scene =
         loaded(fmt::format("[[inflow]]\nline_m = [[{0}, {1}], [{0}, {2}]]\nhydrograph = \"flow.csv\"\n", west + 30,

@@ -14,7 +14,7 @@ using testing::HasSubstr;
 class Extremes : public scene::SceneFolder {};
 
 /// Every number of these sections, at both ends of its range: the scene is refused with the key's name, or it runs.
-TEST_F(Extremes, AreRefusedByNameOrRun) {
+TEST_F(Extremes, are_refused_by_name_or_run) {
     write_valley("[material]\nturbulent_friction_mps2 = 500\nturbulent_friction_thickness_m = 1\n");
     int ran = 0;
     for (const char* name : {"release", "material", "solver", "outputs", "flow_path"}) {

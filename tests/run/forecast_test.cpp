@@ -34,13 +34,13 @@ sim::Ground plane(double slope) {
     return sim::Ground(terrain::Terrain(heights));
 }
 
-TEST(StopTimes, OfABlockOnLevelGroundIsItsSpeedOverTheFriction) {
+TEST(StopTimes, of_a_block_on_level_ground_is_its_speed_over_the_friction) {
     const SlidingBlock block{{-150, 0, 0}, {10, 0, 0}, 1};
     const auto stops = stop_times(sliding(0.25), plane(0), {block}, 0.1, 100);
     EXPECT_NEAR(stops.at(0), 10 / (0.25 * 9.80665), 0.15);
 }
 
-TEST(StopTimes, EndWhereTheTerrainEndsAndAtTheHorizon) {
+TEST(StopTimes, end_where_the_terrain_ends_and_at_the_horizon) {
     const SlidingBlock block{{-190, 0, 0}, {0, 0, 0}, 1};
     const double angle = std::atan(0.5), pull = 9.80665 * (std::sin(angle) - 0.25 * std::cos(angle));
     const double way = 389 / std::cos(angle);  // from the start to the last column of cell centres
@@ -49,7 +49,7 @@ TEST(StopTimes, EndWhereTheTerrainEndsAndAtTheHorizon) {
     EXPECT_DOUBLE_EQ(stop_times(sliding(0.25), plane(0.5), {block}, 0.1, 3).at(0), 3);
 }
 
-TEST(StopTimes, ALateBlockStartsLate) {
+TEST(StopTimes, a_late_block_starts_late) {
     const SlidingBlock early{{-150, 0, 0}, {10, 0, 0}, 1};
     SlidingBlock late = early;
     late.start = 7;
@@ -70,7 +70,7 @@ Outlook coasting(double time) {
     return {.coasting = time, .half_stopped = time, .moving_share = 1, .enough_share = 0.001, .energy = 1};
 }
 
-TEST(TheClock, WhileAllMovesTheEndIsThatOfTheBlocks) {
+TEST(TheClock, while_all_moves_the_end_is_that_of_the_blocks) {
     RunClock clock(solver());
     clock.tick(1, 10, [] { return coasting(30); });
     EXPECT_DOUBLE_EQ(clock.expected_end(), 43);
@@ -78,7 +78,7 @@ TEST(TheClock, WhileAllMovesTheEndIsThatOfTheBlocks) {
     EXPECT_NEAR(clock.share_done(), 1 / 4.3, 1e-9);
 }
 
-TEST(TheClock, WhereSomeBlocksStopMuchLaterDebrisStraggles) {
+TEST(TheClock, where_some_blocks_stop_much_later_debris_straggles) {
     RunClock even(solver()), uneven(solver());
     Outlook outlook = coasting(30);
     outlook.half_stopped = 26;
@@ -89,7 +89,7 @@ TEST(TheClock, WhereSomeBlocksStopMuchLaterDebrisStraggles) {
     EXPECT_DOUBLE_EQ(uneven.expected_end(), 43 + (30. / 15 - 1.25) * (10 + 30) / 2);
 }
 
-TEST(TheClock, KnowsThatEnergyOrMomentumMayEndTheRunSooner) {
+TEST(TheClock, knows_that_energy_or_momentum_may_end_the_run_sooner) {
     for (const bool by_energy : {true, false}) {
         params::SolverSpec spec = solver();
         (by_energy ? spec.stop_energy_share : spec.stop_momentum_share) = by_energy ? 0.01 : 0.1;
@@ -105,13 +105,13 @@ TEST(TheClock, KnowsThatEnergyOrMomentumMayEndTheRunSooner) {
     }
 }
 
-TEST(TheClock, NeverPassesTheEndTime) {
+TEST(TheClock, never_passes_the_end_time) {
     RunClock clock(solver());
     clock.tick(1, 10, [] { return coasting(290); });
     EXPECT_DOUBLE_EQ(clock.expected_end(), 300);
 }
 
-TEST(TheClock, WaitsForWhatIsStillToCome) {
+TEST(TheClock, waits_for_what_is_still_to_come) {
     RunClock clock(solver());
     clock.tick(1, 10, [] {
         return Outlook{.coasting = 0, .moving_share = 0, .enough_share = 0.001, .energy = 1, .wait = 50};
@@ -119,7 +119,7 @@ TEST(TheClock, WaitsForWhatIsStillToCome) {
     EXPECT_DOUBLE_EQ(clock.expected_end(), 63);
 }
 
-TEST(TheClock, WhatSleepsCostsLess) {
+TEST(TheClock, what_sleeps_costs_less) {
     RunClock awake(solver()), asleep(solver());
     Outlook outlook{.coasting = 20, .moving_share = 0.1, .enough_share = 0.001, .energy = 1};
     const auto fastest = [] { return coasting(25); };
@@ -132,7 +132,7 @@ TEST(TheClock, WhatSleepsCostsLess) {
     EXPECT_NEAR(asleep.wall_remaining(), awake.wall_remaining() * (0.25 + 0.75 * 0.2), 1e-9);
 }
 
-TEST(TheClock, StepsGrowLongerAsDebrisComesToRest) {
+TEST(TheClock, steps_grow_longer_as_debris_comes_to_rest) {
     RunClock clock(solver());
     double time = 0, wall_time = 0;
     const auto look = [] { return coasting(30); };
@@ -144,7 +144,7 @@ TEST(TheClock, StepsGrowLongerAsDebrisComesToRest) {
 }
 
 /// Debris of which ever less moves: half of it after every 10 s, which blocks that slide alone know nothing of.
-TEST(TheClock, FollowsTheDecayOfAStragglingTail) {
+TEST(TheClock, follows_the_decay_of_a_straggling_tail) {
     RunClock clock(solver());
     const double end = 10 * std::log2(1000) + 3;
     for (double time = 1; time < 90; time += 1) {
@@ -198,7 +198,7 @@ Ratio ratio_of(const scene::Scene& scene) {
     return ratio;
 }
 
-TEST_F(ClockOfARun, OfAValleyIsRightToAFactorOfTwo) {
+TEST_F(ClockOfARun, of_a_valley_is_right_to_a_factor_of_two) {
     write_valley("");
     const auto scene =
         scene::load_scene(folder / "scene.toml", {"solver.target_particle_count=400", "solver.end_time_s=200"});
@@ -209,7 +209,7 @@ TEST_F(ClockOfARun, OfAValleyIsRightToAFactorOfTwo) {
     EXPECT_LT(ratio.greatest, 2);
 }
 
-TEST_F(ClockOfARun, OfASlopeOntoLevelGroundIsRightToAFactorOfTwo) {
+TEST_F(ClockOfARun, of_a_slope_onto_level_ground_is_right_to_a_factor_of_two) {
     write_terrain("dem.tif", [](double x, double) { return std::max(0.0, 60 - 0.6 * x); });
     write_features("release.geojson", {rectangle(20, 90, 40, 110)});
     write("scene.toml",
@@ -223,7 +223,7 @@ TEST_F(ClockOfARun, OfASlopeOntoLevelGroundIsRightToAFactorOfTwo) {
     EXPECT_LT(ratio.greatest, 2);
 }
 
-TEST_F(ClockOfARun, OfAnInflowIsRightToAFactorOfTwo) {
+TEST_F(ClockOfARun, of_an_inflow_is_right_to_a_factor_of_two) {
     write_valley("");
     write("hydrograph.csv", "time_s,discharge_m3ps,velocity_mps\n0,20,3\n20,20,3\n");
     write("scene.toml",
@@ -238,7 +238,7 @@ TEST_F(ClockOfARun, OfAnInflowIsRightToAFactorOfTwo) {
 }
 
 /// On rough ground few particles go on for long after the others, which nothing foresees early on.
-TEST_F(ClockOfARun, OfTheBuiltInSceneIsRightToAFactorOfFour) {
+TEST_F(ClockOfARun, of_the_built_in_scene_is_right_to_a_factor_of_four) {
     const auto scene = scene::load_scene(fs::path(TALUS_SOURCE_DIR) / "scenes/sham_tseng/scene.toml",
                                          {"solver.target_particle_count=600", "solver.end_time_s=90"});
     ASSERT_TRUE(scene) << scene.error().message;

@@ -32,7 +32,7 @@ class RunOfAScene : public scene::SceneFolder {
     }
 };
 
-TEST_F(RunOfAScene, StepByStepIsTheWholeOne) {
+TEST_F(RunOfAScene, step_by_step_is_the_whole_one) {
     const scene::Scene scene = loaded("");
     auto run = run::Run::start(scene);
     ASSERT_TRUE(run) << run.error().message;
@@ -54,7 +54,7 @@ TEST_F(RunOfAScene, StepByStepIsTheWholeOne) {
     EXPECT_EQ(result.observation.timeseries.size(), whole->observation.timeseries.size());
 }
 
-TEST_F(RunOfAScene, ShowsItsDebrisOverTimeAndTheSameResult) {
+TEST_F(RunOfAScene, shows_its_debris_over_time_and_the_same_result) {
     const scene::Scene scene = loaded("[outputs]\nseries_interval_s = 0.25\n");
     std::vector<double> times, volumes;
     RunOptions options;
@@ -78,7 +78,7 @@ TEST_F(RunOfAScene, ShowsItsDebrisOverTimeAndTheSameResult) {
     }
 }
 
-TEST_F(RunOfAScene, TakesThePathOfTheDebrisInPlaceOfATracedOne) {
+TEST_F(RunOfAScene, takes_the_path_of_the_debris_in_place_of_a_traced_one) {
     scene::Scene scene = loaded("", {"solver.end_time_s=12"});
     const std::vector<PlanPoint> traced = scene.flow_path.points();
     const auto result = run_scene(scene, {});
@@ -91,14 +91,14 @@ TEST_F(RunOfAScene, TakesThePathOfTheDebrisInPlaceOfATracedOne) {
     EXPECT_THAT(scene.notes.back(), HasSubstr("the path that debris followed"));
 }
 
-TEST_F(RunOfAScene, KeepsTheTracedPathThatObservationsReferTo) {
+TEST_F(RunOfAScene, keeps_the_traced_path_that_observations_refer_to) {
     const auto result =
         run_scene(loaded("[[observation]]\nchainage_m = 20\nfront_velocity_mps = 5\n", {"solver.end_time_s=12"}), {});
     ASSERT_TRUE(result);
     EXPECT_FALSE(result->observation.followed_path);
 }
 
-TEST_F(RunOfAScene, TakesWhatTheSceneHas) {
+TEST_F(RunOfAScene, takes_what_the_scene_has) {
     const scene::Scene scene = loaded(
         "[[bed]]\ndepth_m = 0.4\ngrowth_rate_per_m = 0.01\n[[zone]]\nname = \"fan\"\n"
         "polygon = \"824100 825050, 824150 825050, 824150 825100, 824100 825100\"\nfriction_coefficient = 0.9\n");
@@ -108,7 +108,7 @@ TEST_F(RunOfAScene, TakesWhatTheSceneHas) {
     EXPECT_FALSE((*run)->model().cover.empty());
 }
 
-TEST_F(RunOfAScene, CountsTheParticlesOfReleasesNotThoseOfTheBed) {
+TEST_F(RunOfAScene, counts_the_particles_of_releases_not_those_of_the_bed) {
     const auto result = run_scene(loaded("[[bed]]\ndepth_m = 0.5\ngrowth_rate_per_m = 0.01\n"), {});
     ASSERT_TRUE(result);
     ASSERT_GT(result->observation.timeseries.back().volume_entrained, 0);
@@ -116,7 +116,7 @@ TEST_F(RunOfAScene, CountsTheParticlesOfReleasesNotThoseOfTheBed) {
     EXPECT_NEAR(result->particles * particle, result->observation.volume_released, particle);
 }
 
-TEST_F(RunOfAScene, DebrisThatMeetsNodataHasLeftAndTheBalanceHolds) {
+TEST_F(RunOfAScene, debris_that_meets_nodata_has_left_and_the_balance_holds) {
     write_valley();
     write_terrain("dem.tif", [](double x, double y) {
         const bool hole = std::abs(x - west - 62) < 8 && std::abs(y - south - 100) < 12;
@@ -139,7 +139,7 @@ TEST_F(RunOfAScene, DebrisThatMeetsNodataHasLeftAndTheBalanceHolds) {
     }
 }
 
-TEST_F(RunOfAScene, StopsWhenAsked) {
+TEST_F(RunOfAScene, stops_when_asked) {
     std::atomic<bool> stop{false};
     RunOptions options;
     options.stop_requested = &stop;
@@ -151,7 +151,7 @@ TEST_F(RunOfAScene, StopsWhenAsked) {
     EXPECT_THAT(result->stop_reason, StartsWith("stopped by the user at t = 0.1 s"));
 }
 
-TEST_F(RunOfAScene, AChangeBringsItBackFromRest) {
+TEST_F(RunOfAScene, a_change_brings_it_back_from_rest) {
     auto started = run::Run::start(
         loaded("", {"material.friction_coefficient=3", "solver.stop_duration_s=0.2", "solver.end_time_s=60"}));
     ASSERT_TRUE(started);
@@ -166,7 +166,7 @@ TEST_F(RunOfAScene, AChangeBringsItBackFromRest) {
     EXPECT_TRUE(run.advance());
 }
 
-TEST_F(RunOfAScene, TooManyParticlesAreRefused) {
+TEST_F(RunOfAScene, too_many_particles_are_refused) {
     scene::Scene scene = loaded("");
     scene.spec.solver.particle_limit = 100;
     const auto result = run_scene(scene, {});
@@ -175,7 +175,7 @@ TEST_F(RunOfAScene, TooManyParticlesAreRefused) {
     EXPECT_THAT(result.error().message, HasSubstr("solver.particle_limit = 100"));
 }
 
-TEST_F(RunOfAScene, AFaultNamesTheFirstBadParticleItsCellAndItsNeighbours) {
+TEST_F(RunOfAScene, a_fault_names_the_first_bad_particle_its_cell_and_its_neighbours) {
     const auto run = run::Run::start(loaded(""));
     ASSERT_TRUE(run);
     const sim::State good = (*run)->state();
@@ -197,7 +197,7 @@ TEST_F(RunOfAScene, AFaultNamesTheFirstBadParticleItsCellAndItsNeighbours) {
     EXPECT_THAT(record.sentence, HasSubstr(fmt::format("with {} neighbours", particle["neighbours"].size())));
 }
 
-TEST(EndlessRun, GoesOnBeyondItsEndAndAfterAFault) {
+TEST(EndlessRun, goes_on_beyond_its_end_and_after_a_fault) {
     params::SolverSpec solver;
     solver.end_time = 0.01;
     const Grid<float> level(GridGeometry{0, 0, 1, 20, 20}, 0.0F);

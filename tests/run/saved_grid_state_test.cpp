@@ -58,7 +58,7 @@ end_time_s = 8
     }
 };
 
-TEST_F(SavedGridState, ARunThatStartsFromItIsTheOneThatWasNotInterrupted) {
+TEST_F(SavedGridState, a_run_that_starts_from_it_is_the_one_that_was_not_interrupted) {
     const scene::Scene scene = loaded();
     const auto whole = run_scene(scene, {});
     ASSERT_TRUE(whole) << whole.error().message;
@@ -80,7 +80,7 @@ TEST_F(SavedGridState, ARunThatStartsFromItIsTheOneThatWasNotInterrupted) {
     }
 }
 
-TEST_F(SavedGridState, HasDebrisInTheAirThatFliesOn) {
+TEST_F(SavedGridState, has_debris_in_the_air_that_flies_on) {
     write_terrain("dem.tif", [](double x, double) { return x - west < 60 ? 200 - 0.3 * (x - west) : 150; });
     const std::vector<std::string> keys = {"solver.flight=true"};
     const auto whole = run_scene(loaded(keys), {});
@@ -92,7 +92,7 @@ TEST_F(SavedGridState, HasDebrisInTheAirThatFliesOn) {
     expect_same(*whole, *rest);
 }
 
-TEST_F(SavedGridState, OfTheEndIsContinuedToALaterOneAsIfThatHadBeenMeant) {
+TEST_F(SavedGridState, of_the_end_is_continued_to_a_later_one_as_if_that_had_been_meant) {
     const auto whole = run_scene(loaded(), {});
     ASSERT_TRUE(whole);
     for (const std::optional<double> time : {std::optional<double>(), std::optional(6.0)}) {
@@ -102,7 +102,7 @@ TEST_F(SavedGridState, OfTheEndIsContinuedToALaterOneAsIfThatHadBeenMeant) {
     }
 }
 
-TEST_F(SavedGridState, OfALaterTimeThanTheEndHasNothingLeftToCompute) {
+TEST_F(SavedGridState, of_a_later_time_than_the_end_has_nothing_left_to_compute) {
     const std::string state = state_at(loaded(), 7);
     const auto rest = run_from(loaded({"solver.end_time_s=6"}), state);
     ASSERT_TRUE(rest) << rest.error().message;
@@ -110,7 +110,7 @@ TEST_F(SavedGridState, OfALaterTimeThanTheEndHasNothingLeftToCompute) {
     EXPECT_THAT(rest->stop_reason, HasSubstr("solver.end_time_s = 6"));
 }
 
-TEST_F(SavedGridState, OfTheEndAtRestStaysAtRest) {
+TEST_F(SavedGridState, of_the_end_at_rest_stays_at_rest) {
     const std::vector<std::string> keys = {"solver.end_time_s=400", "material.friction_coefficient=0.6"};
     const auto whole = run_scene(loaded(keys), {});
     ASSERT_TRUE(whole);
@@ -120,7 +120,7 @@ TEST_F(SavedGridState, OfTheEndAtRestStaysAtRest) {
     expect_same(*whole, *rest);
 }
 
-TEST_F(SavedGridState, OfSomethingElseIsRefusedAndSaysWhatIsDifferent) {
+TEST_F(SavedGridState, of_something_else_is_refused_and_says_what_is_different) {
     const std::string state = state_at(loaded(), 0.5);
     EXPECT_EQ(refusal(state, {"material.friction_coefficient=0.5"}),
               "run.state: is of a scene with material.friction_coefficient = 0.2, here it is 0.5");

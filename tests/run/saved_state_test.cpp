@@ -54,7 +54,7 @@ friction_coefficient = 0.25
     }
 };
 
-TEST_F(SavedState, ARunThatStartsFromItIsTheOneThatWasNotInterrupted) {
+TEST_F(SavedState, a_run_that_starts_from_it_is_the_one_that_was_not_interrupted) {
     const scene::Scene scene = loaded();
     const auto whole = run_scene(scene, {});
     ASSERT_TRUE(whole) << whole.error().message;
@@ -72,7 +72,7 @@ TEST_F(SavedState, ARunThatStartsFromItIsTheOneThatWasNotInterrupted) {
     }
 }
 
-TEST_F(SavedState, HasSleepingDebrisThatSleepsOn) {
+TEST_F(SavedState, has_sleeping_debris_that_sleeps_on) {
     const scene::Scene scene = loaded();
     auto run = Run::start(scene);
     ASSERT_TRUE(run) << run.error().message;
@@ -88,7 +88,7 @@ TEST_F(SavedState, HasSleepingDebrisThatSleepsOn) {
     EXPECT_EQ(*save_state(scene, **other), *state) << "the state of the restored run is another one";
 }
 
-TEST_F(SavedState, OfTheEndIsContinuedToALaterOne) {
+TEST_F(SavedState, of_the_end_is_continued_to_a_later_one) {
     const auto whole = run_scene(loaded(), {});
     ASSERT_TRUE(whole);
     const auto rest = run_from(loaded(), state_at(loaded({"solver.end_time_s=5"}), {}));
@@ -97,7 +97,7 @@ TEST_F(SavedState, OfTheEndIsContinuedToALaterOne) {
     expect_same_map(rest->observation.maps.peak_depth, whole->observation.maps.peak_depth, "peak depth");
 }
 
-TEST_F(SavedState, OfSomethingElseIsRefusedAndSaysWhatIsDifferent) {
+TEST_F(SavedState, of_something_else_is_refused_and_says_what_is_different) {
     const std::string state = state_at(loaded(), 0.5);
     EXPECT_EQ(refusal(state, {"material.friction_coefficient=0.5"}),
               "run.state: is of a scene with material.friction_coefficient = 0.25, here it is 0.5");
@@ -118,7 +118,7 @@ TEST_F(SavedState, OfSomethingElseIsRefusedAndSaysWhatIsDifferent) {
     EXPECT_EQ(refusal(state, {}), "run.state: is of another terrain");
 }
 
-TEST_F(SavedState, OfAZoomThereIsNone) {
+TEST_F(SavedState, of_a_zoom_there_is_none) {
     scene::Scene scene = loaded({});
     scene.zoom.emplace();
     const Status status = check_state_can_be_saved(scene);

@@ -30,7 +30,7 @@ RunResult with_depths(Grid<float> depths) {
     return result;
 }
 
-TEST(AreaAgreement, IsTheSharedAreaOverTheAreaOfEither) {
+TEST(AreaAgreement, is_the_shared_area_over_the_area_of_either) {
     // Cells of 4 m2: two in both, one in the first alone, three in the second alone, one too shallow in both.
     const AreaAgreement areas = area_agreement(row_of({1, 2, 0.3F, none, 0, 0.09F, none, 0.05F}),
                                                row_of({1, 0.2F, none, 3, 0.4F, 0.11F, none, 0.09F}), 0.1);
@@ -40,14 +40,14 @@ TEST(AreaAgreement, IsTheSharedAreaOverTheAreaOfEither) {
     EXPECT_DOUBLE_EQ(areas.intersection_over_union(), 2.0 / 6);
 }
 
-TEST(AreaAgreement, IsOneForTheSameAreaZeroForNoneSharedAndUnknownForNone) {
+TEST(AreaAgreement, is_one_for_the_same_area_zero_for_none_shared_and_unknown_for_none) {
     const Grid<float> west = row_of({1, 1, none, none}), east = row_of({none, none, 1, 1});
     EXPECT_DOUBLE_EQ(area_agreement(west, west, 0.1).intersection_over_union(), 1);
     EXPECT_DOUBLE_EQ(area_agreement(west, east, 0.1).intersection_over_union(), 0);
     EXPECT_TRUE(std::isnan(area_agreement(west, east, 2).intersection_over_union()));
 }
 
-TEST(SecondOpinion, ComparesMapsOfDifferentCellsAndPlacesOnTheCoarserOnes) {
+TEST(SecondOpinion, compares_maps_of_different_cells_and_places_on_the_coarser_ones) {
     const scene::Scene scene = scene_on(10, 4);
     // Fine cells of 2 m from 4 m on, coarse ones of 4 m from 8 m on.
     Grid<float> fine = row_of({1, 1, 2, 4}, 4);
@@ -68,7 +68,7 @@ TEST(SecondOpinion, ComparesMapsOfDifferentCellsAndPlacesOnTheCoarserOnes) {
     EXPECT_DOUBLE_EQ(depth.largest.at.x, 14);
 }
 
-TEST(SecondOpinion, ComparesPeaksOfSpeedOnTheCellsOfEachAndMediansOnTheGroundOfBoth) {
+TEST(SecondOpinion, compares_peaks_of_speed_on_the_cells_of_each_and_medians_on_the_ground_of_both) {
     const scene::Scene scene = scene_on(8, 2);
     RunResult particles = with_depths(row_of({1, 1, 1, 1, 1, none, none}));
     RunResult grid = with_depths(row_of({0.05F, 0.05F, 1, 1, 1, 1, none}));
@@ -87,7 +87,7 @@ TEST(SecondOpinion, ComparesPeaksOfSpeedOnTheCellsOfEachAndMediansOnTheGroundOfB
     EXPECT_TRUE(std::isnan(speed.difference.values[6]));
 }
 
-TEST(SecondOpinion, AHalfCoveredCellKeepsTheSpeedOfItsDebrisAndTheVolumeOfItsDepth) {
+TEST(SecondOpinion, a_half_covered_cell_keeps_the_speed_of_its_debris_and_the_volume_of_its_depth) {
     const scene::Scene scene = scene_on(10, 4);
     const RunResult particles = with_depths(row_of({6, none}, 4)), grid = with_depths(row_of({5}, 4, 4));
     const SecondOpinion opinion = second_opinion(scene, particles, grid);
@@ -117,7 +117,7 @@ RunResult followed_to(double end) {
     return result;
 }
 
-TEST(TakeOnePath, TheFrontOfNeitherModelEndsWithThePathOfTheOther) {
+TEST(TakeOnePath, the_front_of_neither_model_ends_with_the_path_of_the_other) {
     for (const bool particles_farther : {false, true}) {
         scene::Scene scene = scene_on(300, 1), grid_scene = scene_on(300, 1);
         RunResult particles = followed_to(particles_farther ? 278 : 238),
@@ -137,7 +137,7 @@ TEST(TakeOnePath, TheFrontOfNeitherModelEndsWithThePathOfTheOther) {
     }
 }
 
-TEST(TakeOnePath, LeavesAPathThatTheSceneGives) {
+TEST(TakeOnePath, leaves_a_path_that_the_scene_gives) {
     scene::Scene scene = scene_on(300, 1), grid_scene = scene_on(300, 1);
     scene.flow_path = grid_scene.flow_path = terrain::FlowPath({{0, 0}, {100, 0}}, 40);
     RunResult particles = followed_to(238), grid = followed_to(278);
@@ -148,7 +148,7 @@ TEST(TakeOnePath, LeavesAPathThatTheSceneGives) {
     EXPECT_TRUE(scene.notes.empty());
 }
 
-TEST(SecondOpinion, FindsWhereTheFrontsDifferMostInTime) {
+TEST(SecondOpinion, finds_where_the_fronts_differ_most_in_time) {
     const scene::Scene scene = scene_on(4, 2);
     RunResult particles = with_depths(row_of({1})), grid = with_depths(row_of({1}));
     particles.observation.front = {{10, 1.0}, {20, 2.0}, {30, 3.0}, {40, 4.0}};

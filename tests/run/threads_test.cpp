@@ -20,7 +20,7 @@ int processor_threads() {
     return static_cast<int>(std::thread::hardware_concurrency());
 }
 
-TEST(Threads, AreAsManyAsAskedFor) {
+TEST(Threads, are_as_many_as_asked_for) {
     for (const int wanted : {1, 2, processor_threads() + 3}) {
         const Threads threads(wanted);
         EXPECT_EQ(threads.count(), wanted);
@@ -28,11 +28,11 @@ TEST(Threads, AreAsManyAsAskedFor) {
     }
 }
 
-TEST(Threads, AreThoseOfTheProcessorUnlessAskedFor) {
+TEST(Threads, are_those_of_the_processor_unless_asked_for) {
     EXPECT_EQ(Threads().count(), processor_threads());
 }
 
-TEST(Threads, LeaveOthersTheirs) {
+TEST(Threads, leave_others_theirs) {
     const std::size_t before = allowed_in_all();
     const Threads one(1);
     EXPECT_EQ(allowed_in_all(), before);
@@ -47,7 +47,7 @@ double resident() {
     return pages * static_cast<double>(sysconf(_SC_PAGESIZE));
 }
 
-TEST(Threads, LeaveNothingBehind) {
+TEST(Threads, leave_nothing_behind) {
     const auto work = [](int times) {
         for (int k = 0; k < times; ++k) {
             Threads(2).execute([] { tbb::parallel_for(0, 100, [](int) {}); });
@@ -59,7 +59,7 @@ TEST(Threads, LeaveNothingBehind) {
     EXPECT_LT(resident() - before, 1e6);
 }
 
-TEST(Threads, CanBeMoreThanTheProcessorHas) {
+TEST(Threads, can_be_more_than_the_processor_has) {
     const Threads many(processor_threads() + 3);
     EXPECT_GE(allowed_in_all(), static_cast<std::size_t>(processor_threads()) + 3);
 }

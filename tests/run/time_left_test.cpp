@@ -22,7 +22,7 @@ double remaining(double time, double share) {
     return share < least_share_done ? unknown : time * (1 - share) / share;
 }
 
-TEST(TimeLeft, OfOneRunIsWhatItSaysItself) {
+TEST(TimeLeft, of_one_run_is_what_it_says_itself) {
     WorkClock clock(equal(1));
     clock.begin(0, 100);
     for (const auto& [time, share] : std::vector<std::pair<double, double>>{{2, 0.1}, {5, 0.25}, {18, 0.9}}) {
@@ -34,7 +34,7 @@ TEST(TimeLeft, OfOneRunIsWhatItSaysItself) {
     EXPECT_EQ(clock.wall_remaining(120), 0);
 }
 
-TEST(TimeLeft, NothingIsSaidBelowOnePercent) {
+TEST(TimeLeft, nothing_is_said_below_one_percent) {
     WorkClock clock(equal(100));
     EXPECT_TRUE(std::isnan(clock.wall_remaining(0)));
     clock.begin(0, 0);
@@ -48,7 +48,7 @@ TEST(TimeLeft, NothingIsSaidBelowOnePercent) {
 
 /// 64 runs of 0.5 s, two at once, each of which reads files for 0.3 s before its first step. What was told after the
 /// first step was hours.
-TEST(TimeLeft, ASlowStartDoesNotMakeHours) {
+TEST(TimeLeft, a_slow_start_does_not_make_hours) {
     WorkClock clock(equal(64), 2);
     double worst = 0;
     for (int round = 0; round < 32; ++round) {
@@ -67,7 +67,7 @@ TEST(TimeLeft, ASlowStartDoesNotMakeHours) {
     EXPECT_EQ(clock.wall_remaining(16), 0);
 }
 
-TEST(TimeLeft, TheLastRunOfSeveralWorkersTakesAllOfItsTime) {
+TEST(TimeLeft, the_last_run_of_several_workers_takes_all_of_its_time) {
     WorkClock clock(equal(9), 8);
     for (std::size_t run = 0; run < 8; ++run) clock.begin(run, 0);
     for (std::size_t run = 0; run < 8; ++run) clock.tick(run, 5, remaining(5, 0.25));
@@ -79,7 +79,7 @@ TEST(TimeLeft, TheLastRunOfSeveralWorkersTakesAllOfItsTime) {
     EXPECT_NEAR(clock.wall_remaining(30), 30, 1e-9);
 }
 
-TEST(TimeLeft, TheFirstToEndAreTheShortOnes) {
+TEST(TimeLeft, the_first_to_end_are_the_short_ones) {
     WorkClock clock(equal(4), 2);
     clock.begin(0, 0);
     clock.begin(1, 0);
@@ -89,7 +89,7 @@ TEST(TimeLeft, TheFirstToEndAreTheShortOnes) {
     EXPECT_NEAR(clock.wall_remaining(10), 50, 1e-9);
 }
 
-TEST(TimeLeft, ResumedWorkIsNoneOfThisCalls) {
+TEST(TimeLeft, resumed_work_is_none_of_this_calls) {
     WorkClock clock(equal(100), 1);
     for (std::size_t run = 0; run < 90; ++run) clock.found(run, 7);
     clock.begin(90, 1000);
@@ -99,7 +99,7 @@ TEST(TimeLeft, ResumedWorkIsNoneOfThisCalls) {
     EXPECT_NEAR(clock.wall_remaining(1010), 10 + 9 * 20, 1e-9);
 }
 
-TEST(TimeLeft, IsUnknownWhereASilentRunOutlastsTheOthers) {
+TEST(TimeLeft, is_unknown_where_a_silent_run_outlasts_the_others) {
     WorkClock clock(equal(2), 2);
     clock.begin(0, 0);
     clock.begin(1, 0);
@@ -107,7 +107,7 @@ TEST(TimeLeft, IsUnknownWhereASilentRunOutlastsTheOthers) {
     EXPECT_TRUE(std::isnan(clock.wall_remaining(11))) << "never 0:00 for minutes";
 }
 
-TEST(TimeLeft, TheShareDoneNeverFalls) {
+TEST(TimeLeft, the_share_done_never_falls) {
     WorkClock clock(equal(2));
     clock.begin(0, 0);
     clock.tick(0, 10, 10);

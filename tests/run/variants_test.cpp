@@ -21,7 +21,7 @@ std::vector<std::string> names(const std::vector<Variant>& variants) {
     return all;
 }
 
-TEST(Variations, AreOnePerValue) {
+TEST(Variations, are_one_per_value) {
     const auto variants = variations("material.friction_coefficient=0.3,0.5");
     ASSERT_TRUE(variants);
     EXPECT_THAT(names(*variants),
@@ -29,14 +29,14 @@ TEST(Variations, AreOnePerValue) {
     EXPECT_THAT((*variants)[1].overrides, ElementsAre("material.friction_coefficient=0.5"));
 }
 
-TEST(Variations, CommasInBracketsAndQuotesDoNotSeparate) {
+TEST(Variations, commas_in_brackets_and_quotes_do_not_separate) {
     const auto variants = variations(R"(terrain.extent_m=[0,0,1,1],none)");
     ASSERT_TRUE(variants);
     EXPECT_THAT(names(*variants), ElementsAre("terrain.extent_m = [0,0,1,1]", "terrain.extent_m = none"));
     EXPECT_EQ(variations(R"(release[0].file="a,b.geojson",'c,d.geojson')")->size(), 2U);
 }
 
-TEST(Variations, WithoutKeyOrValueAreRefused) {
+TEST(Variations, without_key_or_value_are_refused) {
     for (const char* text : {"", "=1", "material.viscosity", "material.viscosity=", "material.viscosity=0.1,,0.2",
                              "material.viscosity=0.1,"}) {
         EXPECT_FALSE(variations(text)) << text;
@@ -60,7 +60,7 @@ class Variants : public scene::SceneFolder {
     SceneSource source;
 };
 
-TEST_F(Variants, RefinementsHalveTheStepDoubleTheIterationsAndTripleTheParticles) {
+TEST_F(Variants, refinements_halve_the_step_double_the_iterations_and_triple_the_particles) {
     const scene::Scene scene = base();
     const auto refined = refinements(scene);
     ASSERT_THAT(names(refined),
@@ -77,20 +77,20 @@ TEST_F(Variants, RefinementsHalveTheStepDoubleTheIterationsAndTripleTheParticles
     EXPECT_EQ(with(refined[2]).spec.solver.displacement_limit, given.displacement_limit);
 }
 
-TEST_F(Variants, AFixedTimeStepIsHalvedItself) {
+TEST_F(Variants, a_fixed_time_step_is_halved_itself) {
     source.overrides = {"solver.time_step_s=0.01"};
     const auto refined = refinements(base());
     EXPECT_EQ(with(refined[0]).spec.solver.time_step, 0.005);
     EXPECT_EQ(with(refined[0]).spec.solver.displacement_limit, base().spec.solver.displacement_limit);
 }
 
-TEST_F(Variants, ThreeTimesTheParticlesAlsoWhereTheirNumberIsGiven) {
+TEST_F(Variants, three_times_the_particles_also_where_their_number_is_given) {
     source.overrides = {"solver.target_particle_count=100"};
     const scene::Scene scene = base(), finer = with(refinements(scene)[2]);
     EXPECT_NEAR(std::pow(particle_spacing(scene) / *finer.spec.solver.particle_spacing, 3), 3, 1e-9);
 }
 
-TEST_F(Variants, AreRefusedBeforeAnythingRanWithTheMessageOfTheParser) {
+TEST_F(Variants, are_refused_before_anything_ran_with_the_message_of_the_parser) {
     const auto refusal = [&](const std::string& text) {
         const auto prepared = prepare_variants(source, base(), *variations(text));
         return prepared ? "(accepted)" : prepared.error().message;
@@ -101,7 +101,7 @@ TEST_F(Variants, AreRefusedBeforeAnythingRanWithTheMessageOfTheParser) {
     EXPECT_THAT(refusal("solver.particle_limit=1"), HasSubstr("more than solver.particle_limit = 1"));
 }
 
-TEST_F(Variants, EffortFollowsParticlesIterationsAndSteps) {
+TEST_F(Variants, effort_follows_particles_iterations_and_steps) {
     const auto prepared = prepare_variants(source, base(), refinements(base()));
     ASSERT_TRUE(prepared) << prepared.error().message;
     EXPECT_NEAR((*prepared)[0].effort, 2, 1e-9);
@@ -110,7 +110,7 @@ TEST_F(Variants, EffortFollowsParticlesIterationsAndSteps) {
     EXPECT_GE((*prepared)[2].effort, 3 - 1e-9);
 }
 
-TEST_F(Variants, RunWithTheirOwnValues) {
+TEST_F(Variants, run_with_their_own_values) {
     const auto run = run_variant(source, (*variations("solver.end_time_s=0.2"))[0], {});
     ASSERT_TRUE(run.result) << run.missing;
     EXPECT_NEAR(run.result->simulated_time, 0.2, 0.02);
@@ -118,7 +118,7 @@ TEST_F(Variants, RunWithTheirOwnValues) {
         << "maps of every variant would fill the memory";
 }
 
-TEST_F(Variants, AnInterruptedOneHasNoResult) {
+TEST_F(Variants, an_interrupted_one_has_no_result) {
     const Variant variant = (*variations("solver.end_time_s=100"))[0];
     std::atomic<bool> stop{false};
     RunOptions options;
@@ -132,7 +132,7 @@ TEST_F(Variants, AnInterruptedOneHasNoResult) {
     EXPECT_EQ(after.missing, "interrupted before it began");
 }
 
-TEST_F(Variants, AFaultIsNoResultEither) {
+TEST_F(Variants, a_fault_is_no_result_either) {
     const Variant variant{
         .name = "coarse",
         .overrides = {"solver.largest_time_step_s=0.5", "solver.smallest_time_step_s=0.5", "material.viscosity=0"}};
@@ -149,7 +149,7 @@ Progress progress_at(double time, double end, double real_time_factor) {
     return now;
 }
 
-TEST(SeriesClock, AddsUpAllRuns) {
+TEST(SeriesClock, adds_up_all_runs) {
     SeriesClock clock({{.name = "a", .overrides = {}, .effort = 2}, {.name = "b", .overrides = {}, .effort = 3}});
     const SeriesProgress first = clock.at(progress_at(5, 20, 0.5));
     EXPECT_EQ(first.run, 1U);

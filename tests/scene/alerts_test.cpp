@@ -27,7 +27,7 @@ class AlertsOfAScene : public SceneFolder {
     }
 };
 
-TEST_F(AlertsOfAScene, AreLoadedAsTheyStand) {
+TEST_F(AlertsOfAScene, are_loaded_as_they_stand) {
     write_with(
         "[[trigger]]\nname = \"meter\"\nrelease = \"scarp\"\nvolume_limit_m3 = 900\n"
         "[[trigger]]\nname = \"gauge\"\ninflow = \"gully\"\ndischarge_limit_m3ps = 30\nhold_time_s = 20\n"
@@ -43,7 +43,7 @@ TEST_F(AlertsOfAScene, AreLoadedAsTheyStand) {
     EXPECT_EQ(scene->spec.alarms[1].impact_pressure, 30000);
 }
 
-TEST_F(AlertsOfAScene, NameOnlyWhatExistsAndFitsTogether) {
+TEST_F(AlertsOfAScene, name_only_what_exists_and_fits_together) {
     const std::string trigger = "[[trigger]]\nname = \"t\"\n", alarm = "[[alarm]]\nname = \"a\"\n";
     const std::pair<std::string, std::vector<std::string>> bad[] = {
         {"[[trigger]]\nrelease = \"scarp\"\n", {"trigger[0].name"}},

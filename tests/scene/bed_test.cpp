@@ -32,7 +32,7 @@ class LoadBed : public SceneFolder {
     }
 };
 
-TEST_F(LoadBed, LiesEverywhereWithoutPolygons) {
+TEST_F(LoadBed, lies_everywhere_without_polygons) {
     write_valley("[[bed]]\ndepth_m = 0.4\ngrowth_rate_per_m = 0.01\n");
     const Scene scene = loaded();
     EXPECT_NEAR(volume_of(scene.bed), 0.4 * columns * rows * cell * cell, 1);
@@ -42,7 +42,7 @@ TEST_F(LoadBed, LiesEverywhereWithoutPolygons) {
     EXPECT_THAT(scene.notes, Contains(HasSubstr("bed \"bed 1\": 24000 m3 on the ground")));
 }
 
-TEST_F(LoadBed, TakesDepthsFromItsPolygons) {
+TEST_F(LoadBed, takes_depths_from_its_polygons) {
     write_channel();
     write_valley("[[bed]]\nfile = \"channel.geojson\"\ndepth_attribute = \"depth_m\"\ngrowth_rate_per_m = 0.01\n");
     const Scene scene = loaded();
@@ -50,7 +50,7 @@ TEST_F(LoadBed, TakesDepthsFromItsPolygons) {
     EXPECT_THAT(scene.inputs, Contains(testing::Field(&InputFile::role, "bed \"bed 1\"")));
 }
 
-TEST_F(LoadBed, TakesDepthsFromARasterWithinItsPolygons) {
+TEST_F(LoadBed, takes_depths_from_a_raster_within_its_polygons) {
     write_channel();
     write_terrain("depth.tif", [](double x, double) { return x < west + 100 ? 0 : 2; });
     write_valley(
@@ -62,7 +62,7 @@ TEST_F(LoadBed, TakesDepthsFromARasterWithinItsPolygons) {
     EXPECT_EQ(scene.bed.materials[0].critical_shear_stress, 500);
 }
 
-TEST_F(LoadBed, TheLastOfSeveralLiesOnTop) {
+TEST_F(LoadBed, the_last_of_several_lies_on_top) {
     write_channel();
     write_valley(
         "[[bed]]\ndepth_m = 0.1\ngrowth_rate_per_m = 0.01\n[[bed]]\nname = \"channel\"\nfile = \"channel.geojson\"\n"
@@ -74,7 +74,7 @@ TEST_F(LoadBed, TheLastOfSeveralLiesOnTop) {
     EXPECT_EQ(scene.bed.material_at[g.index(20, 2)], 1);
 }
 
-TEST_F(LoadBed, RefusesWhatDoesNotSayHowMuchThereIs) {
+TEST_F(LoadBed, refuses_what_does_not_say_how_much_there_is) {
     write_valley("[[bed]]\ngrowth_rate_per_m = 0.01\n");
     EXPECT_THAT(load_error(), AllOf(HasSubstr("bed[0]"), HasSubstr("exactly one of depth_m, depth_attribute, "
                                                                    "depth_raster must be given; there is none")));
@@ -84,7 +84,7 @@ TEST_F(LoadBed, RefusesWhatDoesNotSayHowMuchThereIs) {
     EXPECT_THAT(load_error(), AllOf(HasSubstr("scene.toml:8"), HasSubstr("needs the polygons that have it")));
 }
 
-TEST_F(LoadBed, RefusesALawWithoutItsNumber) {
+TEST_F(LoadBed, refuses_a_law_without_its_number) {
     write_valley("[[bed]]\ndepth_m = 1\n");
     EXPECT_THAT(load_error(),
                 AllOf(HasSubstr("bed[0].growth_rate_per_m: missing"), HasSubstr("law = \"growth\" needs it")));
@@ -94,7 +94,7 @@ TEST_F(LoadBed, RefusesALawWithoutItsNumber) {
     EXPECT_THAT(load_error(), AllOf(HasSubstr("'wind'"), HasSubstr("\"growth\", \"shear\"")));
 }
 
-TEST_F(LoadBed, RefusesWhatLiesNowhere) {
+TEST_F(LoadBed, refuses_what_lies_nowhere) {
     write_features("away.geojson", {rectangle(5000, 5000, 5100, 5100)});
     write_valley("[[bed]]\nfile = \"away.geojson\"\ndepth_m = 1\ngrowth_rate_per_m = 0.01\n");
     EXPECT_THAT(load_error(), AllOf(HasSubstr("bed[0].file"), HasSubstr("covers the centre of no cell")));
@@ -106,7 +106,7 @@ TEST_F(LoadBed, RefusesWhatLiesNowhere) {
     EXPECT_THAT(load_error(), AllOf(HasSubstr("depth of 3000"), HasSubstr("at most 100 (m)")));
 }
 
-TEST_F(LoadBed, RunsAndBalancesItsVolume) {
+TEST_F(LoadBed, runs_and_balances_its_volume) {
     write_valley(
         "[[bed]]\ndepth_m = 0.5\ngrowth_rate_per_m = 0.01\n[solver]\ntarget_particle_count = 400\nend_time_s = 8\n");
     const Scene scene = loaded();
@@ -126,7 +126,7 @@ TEST_F(LoadBed, RunsAndBalancesItsVolume) {
     EXPECT_NEAR(seen.erosion.upstream.back(), seen.erosion.volume, 0.3 * seen.erosion.volume) << "within the corridor";
 }
 
-TEST_F(LoadBed, AnEarlierSurgeChangesTheGround) {
+TEST_F(LoadBed, an_earlier_surge_changes_the_ground) {
     write_terrain("deposit.tif", [](double x, double) { return x < west + 100 ? 1.5 : -9; });
     write_terrain("erosion.tif", [](double x, double) { return x < west + 200 ? 0 : 0.5; });
     write_valley();

@@ -27,7 +27,7 @@ class BuiltinScene : public testing::Test {
     fs::path folder_;
 };
 
-TEST_F(BuiltinScene, UnpacksTheFilesOfTheSourcesByteForByte) {
+TEST_F(BuiltinScene, unpacks_the_files_of_the_sources_byte_for_byte) {
     const auto scene_file = unpack_builtin_scene(folder_);
     ASSERT_TRUE(scene_file) << scene_file.error().message;
     EXPECT_EQ(*scene_file, folder_ / "scene.toml");
@@ -40,7 +40,7 @@ TEST_F(BuiltinScene, UnpacksTheFilesOfTheSourcesByteForByte) {
     EXPECT_GE(count, 3) << "a scene file, a terrain and a release at least";
 }
 
-TEST_F(BuiltinScene, LoadsAwayFromTheSources) {
+TEST_F(BuiltinScene, loads_away_from_the_sources) {
     const auto scene_file = unpack_builtin_scene(folder_);
     ASSERT_TRUE(scene_file) << scene_file.error().message;
     const auto scene = load_scene(*scene_file);
@@ -49,7 +49,7 @@ TEST_F(BuiltinScene, LoadsAwayFromTheSources) {
     EXPECT_NEAR(scene->releases.at(0).volume, 600, 6);
 }
 
-TEST_F(BuiltinScene, NamesTheFolderItCannotMake) {
+TEST_F(BuiltinScene, names_the_folder_it_cannot_make) {
     const auto below_a_file = fs::path("/dev/null") / "folder";
     const auto scene_file = unpack_builtin_scene(below_a_file);
     ASSERT_FALSE(scene_file);

@@ -53,7 +53,7 @@ class Bundle : public SceneFolder {
     }
 };
 
-TEST_F(Bundle, HoldsTheSceneAndItsFilesWithOtherPaths) {
+TEST_F(Bundle, holds_the_scene_and_its_files_with_other_paths) {
     write_valley("[scene]\ntitle = \"Schön\"  # a remark\n");
     const auto packed = write_bundle(folder / "scene.toml", archive());
     ASSERT_TRUE(packed) << packed.error().message;
@@ -81,7 +81,7 @@ TEST_F(Bundle, HoldsTheSceneAndItsFilesWithOtherPaths) {
     }
 }
 
-TEST_F(Bundle, KeepsFilesOfOneNameApart) {
+TEST_F(Bundle, keeps_files_of_one_name_apart) {
     write_valley();
     fs::create_directories(folder / "a");
     fs::create_directories(folder / "b");
@@ -99,7 +99,7 @@ TEST_F(Bundle, KeepsFilesOfOneNameApart) {
     EXPECT_TRUE(fs::exists(unpacked() / "data" / "data-2.tif"));
 }
 
-TEST_F(Bundle, KeepsALayerThatStandsBehindAFile) {
+TEST_F(Bundle, keeps_a_layer_that_stands_behind_a_file) {
     write_valley();
     for (const char* name : {"scar", "other"}) {
         geo::OutputFeature feature;
@@ -119,7 +119,7 @@ TEST_F(Bundle, KeepsALayerThatStandsBehindAFile) {
     EXPECT_NEAR(scene->releases.at(0).extent().x_min, west + 20, 1e-6);
 }
 
-TEST_F(Bundle, RefusesFilesThatAreNotThereOrInAnArchiveOfItsOwn) {
+TEST_F(Bundle, refuses_files_that_are_not_there_or_in_an_archive_of_its_own) {
     write_valley();
     ASSERT_TRUE(geo::write_zip(path("data.zip"), {{"x.geojson", path("release.geojson"), {}}}));
     const auto with_release = [&](const std::string& file) {
@@ -137,7 +137,7 @@ TEST_F(Bundle, RefusesFilesThatAreNotThereOrInAnArchiveOfItsOwn) {
     EXPECT_THAT(refusal(), HasSubstr("is no layer of polygons"));
 }
 
-TEST_F(Bundle, RefusesAVirtualRaster) {
+TEST_F(Bundle, refuses_a_virtual_raster) {
     write_valley();
     write("dem.vrt",
           "<VRTDataset rasterXSize=\"2\" rasterYSize=\"2\"><VRTRasterBand dataType=\"Float32\" "
@@ -147,7 +147,7 @@ TEST_F(Bundle, RefusesAVirtualRaster) {
     EXPECT_THAT(files.error().message, HasSubstr("may name other files"));
 }
 
-TEST_F(Bundle, WritesNothingOutsideItsFolder) {
+TEST_F(Bundle, writes_nothing_outside_its_folder) {
     pack({{"scene.toml", {}, "[terrain]\n"}, {"aa/evil.txt", {}, "evil"}});
     rename_in_archive("aa/evil.txt", "../evil.txt");
     const std::string said = refusal();
@@ -161,7 +161,7 @@ TEST_F(Bundle, WritesNothingOutsideItsFolder) {
     EXPECT_FALSE(fs::exists("/tmp/xx/evil.txt"));
 }
 
-TEST_F(Bundle, RefusesMoreThanItsLimits) {
+TEST_F(Bundle, refuses_more_than_its_limits) {
     pack({{"scene.toml", {}, "[terrain]\n"}, {"zeros.txt", {}, std::string(4'000'000, '0')}});
     EXPECT_LT(fs::file_size(archive()), 20'000U);
     EXPECT_THAT(refusal({.bytes = 1'000'000}), HasSubstr("holds more than 0.001 GB unpacked"));
@@ -169,7 +169,7 @@ TEST_F(Bundle, RefusesMoreThanItsLimits) {
     EXPECT_THAT(refusal({.files = 1}), HasSubstr("holds more than 1 files"));
 }
 
-TEST_F(Bundle, NeedsOneScene) {
+TEST_F(Bundle, needs_one_scene) {
     pack({{"readme.txt", {}, "nothing"}});
     EXPECT_THAT(refusal(), HasSubstr("there is no scene in it"));
     pack({{"a.toml", {}, ""}, {"b.toml", {}, ""}});
@@ -178,7 +178,7 @@ TEST_F(Bundle, NeedsOneScene) {
     EXPECT_THAT(refusal(), HasSubstr("is not a ZIP archive"));
 }
 
-TEST_F(Bundle, RefusesASceneThatNamesFilesOutside) {
+TEST_F(Bundle, refuses_a_scene_that_names_files_outside) {
     write_valley();
     const std::string dem = (folder / "dem.tif").string();
     pack({{"scene.toml",
@@ -190,7 +190,7 @@ TEST_F(Bundle, RefusesASceneThatNamesFilesOutside) {
     EXPECT_THAT(refusal(), HasSubstr("names a file outside the archive"));
 }
 
-TEST_F(Bundle, RefusesAVariantThatNamesWhatTheSceneDoesNot) {
+TEST_F(Bundle, refuses_a_variant_that_names_what_the_scene_does_not) {
     write_valley();
     for (const char* file : {"/etc/hostname", "../../dem.tif", "other.tif", "/vsicurl/http://127.0.0.1:9/a.tif"}) {
         pack({{"scene.toml",
@@ -207,7 +207,7 @@ TEST_F(Bundle, RefusesAVariantThatNamesWhatTheSceneDoesNot) {
     }
 }
 
-TEST_F(Bundle, OverridesOfASavedSessionNameNoFileThatItsSceneDoesNot) {
+TEST_F(Bundle, overrides_of_a_saved_session_name_no_file_that_its_scene_does_not) {
     write_valley("[[variant]]\nname = \"other\"\nset = ['terrain.file=\"other.tif\"']\n");
     const fs::path scene = folder / "scene.toml";
     EXPECT_TRUE(check_saved_overrides(scene, {}));

@@ -21,7 +21,7 @@ class CrossSections : public SceneFolder {
     }
 };
 
-TEST_F(CrossSections, AreLinesOfTheSceneOrOfAFile) {
+TEST_F(CrossSections, are_lines_of_the_scene_or_of_a_file) {
     write_features("lines.geojson", {line("\"bridge\"", 100), line("null", 200)});
     write_valley(
         "[[cross_section]]\nline_m = [[824050, 825050], [824060, 825100], [824050, 825150]]\ninterval_s = 0.5\n"
@@ -37,7 +37,7 @@ TEST_F(CrossSections, AreLinesOfTheSceneOrOfAFile) {
     EXPECT_EQ(scene->cross_sections[2].line.front().x, west + 200);
 }
 
-TEST_F(CrossSections, ThatCannotBeAreRefused) {
+TEST_F(CrossSections, that_cannot_be_are_refused) {
     EXPECT_THAT(error_of("[[cross_section]]\nname = \"x\"\n"), HasSubstr("line_m"));
     EXPECT_THAT(error_of("[[cross_section]]\nline_m = [[824050, 825050]]\n"), HasSubstr("has 1 places"));
     EXPECT_THAT(error_of("[[cross_section]]\nline_m = [[824050, 825050], [1, 2]]\n"),

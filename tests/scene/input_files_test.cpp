@@ -21,7 +21,7 @@ class InputFiles : public SceneFolder {
     }
 };
 
-TEST_F(InputFiles, PipesAndDevicesAreRefused) {
+TEST_F(InputFiles, pipes_and_devices_are_refused) {
     write_inflow("");
     ASSERT_EQ(mkfifo(path("pipe").c_str(), 0600), 0);
     for (const char* key : {"terrain.file", "release.file", "inflow.hydrograph"}) {
@@ -43,12 +43,12 @@ TEST_F(InputFiles, PipesAndDevicesAreRefused) {
     EXPECT_THAT(created.error().message, HasSubstr("it must be a file"));
 }
 
-TEST_F(InputFiles, AByteOrderMarkBeforeAHydrographIsRead) {
+TEST_F(InputFiles, a_byte_order_mark_before_a_hydrograph_is_read) {
     write_inflow("\xEF\xBB\xBFtime_s,discharge_m3ps,velocity_mps\n0,10,2\n10,10,2\n");
     EXPECT_EQ(load_error(), std::string(loaded));
 }
 
-TEST_F(InputFiles, HydrographsOfSpreadsheetsGiveTheirVolume) {
+TEST_F(InputFiles, hydrographs_of_spreadsheets_give_their_volume) {
     const auto volume = [&](const std::string& hydrograph) {
         write_inflow(hydrograph);
         const auto scene = load_scene(folder / "scene.toml");
@@ -64,14 +64,14 @@ TEST_F(InputFiles, HydrographsOfSpreadsheetsGiveTheirVolume) {
     EXPECT_DOUBLE_EQ(volume(utf16), 131.25);
 }
 
-TEST_F(InputFiles, FieldsThatNoColumnHasAreRefused) {
+TEST_F(InputFiles, fields_that_no_column_has_are_refused) {
     write_inflow("time_s,discharge_m3ps,velocity_mps\n0,0,3\n5,10,5,3\n25,0,3\n");
     EXPECT_THAT(load_error(), HasSubstr("h.csv:3: has 4 fields, and the first line names 3 columns"));
     write_inflow("time_s,discharge_m3ps,velocity_mps\n0,0,3\n5,\"10,500\",3\n25,0,3\n");
     EXPECT_THAT(load_error(), HasSubstr("h.csv:3: discharge_m3ps = \"10,500\" is refused, because its comma may mark"));
 }
 
-TEST_F(InputFiles, AColumnGivenTwiceIsRefused) {
+TEST_F(InputFiles, a_column_given_twice_is_refused) {
     write_inflow("time_s,discharge_m3ps,velocity_mps,discharge_m3ps\n0,10,2,20\n10,10,2,20\n");
     EXPECT_THAT(load_error(), HasSubstr("h.csv:1: there are two columns discharge_m3ps; leave one of them out"));
     write_inflow("time_s,discharge_m3ps,velocity_mps,note,note\n0,10,2,a,b\n10,10,2,a,b\n");

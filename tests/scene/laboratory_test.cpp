@@ -13,12 +13,12 @@
 namespace talus::scene {
 namespace {
 
-TEST(OutputScale, IsThatOfTheFieldFromTwentyMetresOn) {
+TEST(OutputScale, is_that_of_the_field_from_twenty_metres_on) {
     for (const double length : {20.0, 84.0, 5000.0}) EXPECT_EQ(output_scale(length), 1) << length;
     EXPECT_EQ(output_scale(0), 1) << "no flow path";
 }
 
-TEST(OutputScale, FallsWithTheFlowPathInRoundSteps) {
+TEST(OutputScale, falls_with_the_flow_path_in_round_steps) {
     EXPECT_NEAR(output_scale(19.9), 1, 1e-12) << "without a jump";
     EXPECT_NEAR(output_scale(10), 0.5, 1e-12);
     EXPECT_NEAR(output_scale(4), 0.2, 1e-12);
@@ -63,7 +63,7 @@ class Flume : public SceneFolder {
     }
 };
 
-TEST_F(Flume, WorksWithoutAReferenceSystem) {
+TEST_F(Flume, works_without_a_reference_system) {
     const Scene scene = loaded();
     EXPECT_TRUE(scene.crs.local);
     EXPECT_NEAR(total_volume(scene), 0.12 * 0.08 / std::cos(std::atan(0.577)), 2e-4);
@@ -71,7 +71,7 @@ TEST_F(Flume, WorksWithoutAReferenceSystem) {
     EXPECT_THAT(scene.notes, Contains(AllOf(HasSubstr("terrain: local coordinates"), HasSubstr("results.kml"))));
 }
 
-TEST_F(Flume, HasLengthsOfItsSize) {
+TEST_F(Flume, has_lengths_of_its_size) {
     const Scene scene = loaded();
     ASSERT_FALSE(scene.flow_path.empty());
     const double scale = output_scale(scene.flow_path.length());
@@ -84,14 +84,14 @@ TEST_F(Flume, HasLengthsOfItsSize) {
     EXPECT_THAT(describe_scene(scene), testing::ContainsRegex("flow path   [0-9]\\.[0-9][0-9] m"));
 }
 
-TEST_F(Flume, KeepsTheLengthsThatItGives) {
+TEST_F(Flume, keeps_the_lengths_that_it_gives) {
     const Scene scene = loaded("chainage_interval_m = 1\narrival_depth_m = 0.1\n");
     EXPECT_EQ(scene.spec.outputs.chainage_interval, 1);
     EXPECT_EQ(scene.spec.outputs.arrival_depth, 0.1);
     EXPECT_THAT(scene.notes, Not(Contains(HasSubstr("chainage_interval_m = "))));
 }
 
-TEST_F(Flume, IsANewScene) {
+TEST_F(Flume, is_a_new_scene) {
     NewSceneOptions options;
     options.dem = path("flume.asc");
     options.release = path("release.geojson");
@@ -108,7 +108,7 @@ TEST_F(Flume, IsANewScene) {
     EXPECT_TRUE(load_scene(made->file));
 }
 
-TEST_F(Flume, ItsFieldSizedNeighbourIsAsBefore) {
+TEST_F(Flume, its_field_sized_neighbour_is_as_before) {
     write_valley("");
     const auto scene = load_scene(folder / "scene.toml");
     ASSERT_TRUE(scene) << scene.error().message;

@@ -32,7 +32,7 @@ class LoadScene : public SceneFolder {
     }
 };
 
-TEST_F(LoadScene, BringsTerrainReleaseAndPathTogether) {
+TEST_F(LoadScene, brings_terrain_release_and_path_together) {
     write_valley();
     const Scene scene = loaded();
     EXPECT_EQ(scene.terrain.elevation().geometry.columns, columns);
@@ -48,7 +48,7 @@ TEST_F(LoadScene, BringsTerrainReleaseAndPathTogether) {
     EXPECT_EQ(scene.inputs[2].hash.size(), 16U);
 }
 
-TEST_F(LoadScene, KnowsWhichKeysWereGiven) {
+TEST_F(LoadScene, knows_which_keys_were_given) {
     write_valley();
     const Scene scene = loaded({"material.viscosity=0.1"});  // which is the default
     EXPECT_THAT(scene.given_keys, Contains("terrain.file"));
@@ -58,7 +58,7 @@ TEST_F(LoadScene, KnowsWhichKeysWereGiven) {
     EXPECT_THAT(scene.given_keys, Not(Contains("release[0]")));
 }
 
-TEST_F(LoadScene, TracesThePathFromTheCrown) {
+TEST_F(LoadScene, traces_the_path_from_the_crown) {
     write_valley();
     const Scene scene = loaded();
     EXPECT_EQ(scene.flow_path_origin, PathOrigin::traced);
@@ -70,14 +70,14 @@ TEST_F(LoadScene, TracesThePathFromTheCrown) {
     EXPECT_THAT(scene.notes, Contains(HasSubstr("flow path: traced downhill from release \"scarp\"")));
 }
 
-TEST_F(LoadScene, TheTerrainIsCroppedToItsExtent) {
+TEST_F(LoadScene, the_terrain_is_cropped_to_its_extent) {
     write_valley();
     const Scene scene = loaded({"terrain.extent_m=[824000, 825050, 824200, 825150]"});
     EXPECT_EQ(scene.terrain.elevation().geometry.columns, 40);
     EXPECT_EQ(scene.terrain.elevation().geometry.rows, 20);
 }
 
-TEST_F(LoadScene, AMissingTerrainSaysWhereToObtainIt) {
+TEST_F(LoadScene, a_missing_terrain_says_where_to_obtain_it) {
     write_valley();
     write("scene.toml",
           "[terrain]\nfile = \"absent.tif\"\nobtain = \"the survey's open data page\"\n[[release]]\n"
@@ -86,7 +86,7 @@ TEST_F(LoadScene, AMissingTerrainSaysWhereToObtainIt) {
                                     EndsWith("to obtain the file: the survey's open data page")));
 }
 
-TEST_F(LoadScene, TerrainErrorsNameTheLineOfTheKey) {
+TEST_F(LoadScene, terrain_errors_name_the_line_of_the_key) {
     write_valley();
     EXPECT_THAT(load_error({"terrain.band=7"}), AllOf(StartsWith(line(2) + "terrain.file: "), HasSubstr("band = 7")));
     EXPECT_THAT(load_error({"terrain.file=" + folder.string()}), StartsWith("--set terrain.file="));
@@ -94,7 +94,7 @@ TEST_F(LoadScene, TerrainErrorsNameTheLineOfTheKey) {
     EXPECT_THAT(load_error(), AllOf(StartsWith(line(2) + "terrain.file: "), HasSubstr("dem.tif")));
 }
 
-TEST_F(LoadScene, ATargetVolumeIsMetByAUniformThickness) {
+TEST_F(LoadScene, a_target_volume_is_met_by_a_uniform_thickness) {
     write_valley("", "volume_m3 = 600");
     const Scene scene = loaded();
     EXPECT_NEAR(scene.releases[0].volume, 600, 0.01);
@@ -104,7 +104,7 @@ TEST_F(LoadScene, ATargetVolumeIsMetByAUniformThickness) {
     EXPECT_THAT(load_error(), AllOf(StartsWith(line(6) + "release[0].volume_m3: "), HasSubstr("m thick")));
 }
 
-TEST_F(LoadScene, AViscosityThatNoStepCanApplyNamesTheMost) {
+TEST_F(LoadScene, a_viscosity_that_no_step_can_apply_names_the_most) {
     write_valley("[material]\nkinematic_viscosity_m2ps = 1e3\n[solver]\nparticle_spacing_m = 1");
     EXPECT_THAT(load_error(), AllOf(StartsWith(line(8) + "material.kinematic_viscosity_m2ps = 1000 is refused"),
                                     HasSubstr("particles of 1 m"), HasSubstr("at most 7")));
@@ -116,7 +116,7 @@ TEST_F(LoadScene, AViscosityThatNoStepCanApplyNamesTheMost) {
     EXPECT_EQ(load_error(), "(it loaded)");
 }
 
-TEST_F(LoadScene, ThicknessComesFromTheAttributeOfEachPolygon) {
+TEST_F(LoadScene, thickness_comes_from_the_attribute_of_each_polygon) {
     write_valley("", "thickness_attribute = \"d\"");
     write_features("release.geojson",
                    {rectangle(20, 90, 40, 100, "\"d\": 1.5"), rectangle(20, 100, 40, 110, "\"d\": 0.5")});
@@ -126,7 +126,7 @@ TEST_F(LoadScene, ThicknessComesFromTheAttributeOfEachPolygon) {
     EXPECT_EQ(scene.releases[0].patches[1].thickness, 0.5);
 }
 
-TEST_F(LoadScene, AThicknessAttributeThatIsAbsentOrNotAboveZeroNamesTheFeature) {
+TEST_F(LoadScene, a_thickness_attribute_that_is_absent_or_not_above_zero_names_the_feature) {
     write_valley("", "thickness_attribute = \"d\"");
     const std::string place = line(6) + "release[0].thickness_attribute: ";
     for (const std::string value : {"0", "-1", "null", "\"thick\"", "1e9"}) {
@@ -139,7 +139,7 @@ TEST_F(LoadScene, AThicknessAttributeThatIsAbsentOrNotAboveZeroNamesTheFeature) 
     EXPECT_THAT(load_error(), AllOf(StartsWith(place), EndsWith("its attributes: depth")));
 }
 
-TEST_F(LoadScene, AThicknessRasterGivesThicknessWhereItIsAboveZero) {
+TEST_F(LoadScene, a_thickness_raster_gives_thickness_where_it_is_above_zero) {
     write_valley("", "thickness_raster = \"thickness.tif\"");
     const double nan = std::numeric_limits<double>::quiet_NaN();
     write_terrain("thickness.tif", [&](double x, double) { return x < west + 30 ? 2.0 : nan; });
@@ -155,7 +155,7 @@ TEST_F(LoadScene, AThicknessRasterGivesThicknessWhereItIsAboveZero) {
     EXPECT_THAT(load_error(), AllOf(StartsWith(line(6)), HasSubstr("no thickness above 0")));
 }
 
-TEST_F(LoadScene, ARasterAloneIsARelease) {
+TEST_F(LoadScene, a_raster_alone_is_a_release) {
     // An L of 300 m2 in plan, 2 m thick, with a part apart; the valley's side is 1.14 times its plan.
     write_terrain("thickness.tif", [&](double x, double y) {
         const double east = x - west, north = y - south;
@@ -182,7 +182,7 @@ TEST_F(LoadScene, ARasterAloneIsARelease) {
     EXPECT_THAT(load_error(), HasSubstr("thickness.tif: has no thickness above 0 over the terrain"));
 }
 
-TEST_F(LoadScene, AnAsciiGridWithoutAReferenceSystemIsInTheTerrains) {
+TEST_F(LoadScene, an_ascii_grid_without_a_reference_system_is_in_the_terrains) {
     write_valley("");
     std::string grid = fmt::format("ncols 4\nnrows 4\nxllcorner {}\nyllcorner {}\ncellsize 5\nNODATA_value -9999\n",
                                    west + 20, south + 90);
@@ -194,7 +194,7 @@ TEST_F(LoadScene, AnAsciiGridWithoutAReferenceSystemIsInTheTerrains) {
     EXPECT_THAT(scene.notes, Contains(HasSubstr("states no coordinate reference system, taken as the terrain's")));
 }
 
-TEST_F(LoadScene, ElevationsInFeetAreAskedAbout) {
+TEST_F(LoadScene, elevations_in_feet_are_asked_about) {
     write_valley("", "thickness_m = 1.5");
     const auto asks = Contains(AllOf(StartsWith("terrain: "), HasSubstr("in feet")));
     EXPECT_THAT(loaded().notes, Not(asks));
@@ -206,7 +206,7 @@ TEST_F(LoadScene, ElevationsInFeetAreAskedAbout) {
     EXPECT_THAT(feet.notes, Contains(HasSubstr("steeper than 28 degrees in truth")));
 }
 
-TEST_F(LoadScene, ParticlesAsThickAsTheReleaseAreNoted) {
+TEST_F(LoadScene, particles_as_thick_as_the_release_are_noted) {
     write_valley("", "thickness_m = 1.5");
     const auto note_at = [&](double spacing) {
         for (const std::string& note : loaded({fmt::format("solver.particle_spacing_m={}", spacing)}).notes) {
@@ -220,7 +220,7 @@ TEST_F(LoadScene, ParticlesAsThickAsTheReleaseAreNoted) {
     EXPECT_EQ(note_at(0.29), "");
 }
 
-TEST_F(LoadScene, AReleaseOutsideTheTerrainIsNamedWithPlaceAndExtent) {
+TEST_F(LoadScene, a_release_outside_the_terrain_is_named_with_place_and_extent) {
     write_valley();
     write_features("release.geojson", {rectangle(-100, 90, -80, 110)});
     EXPECT_THAT(load_error(),
@@ -232,7 +232,7 @@ TEST_F(LoadScene, AReleaseOutsideTheTerrainIsNamedWithPlaceAndExtent) {
     EXPECT_THAT(load_error({"terrain.extent_m=[824100, 825000, 824300, 825200]"}), HasSubstr("widen terrain.extent_m"));
 }
 
-TEST_F(LoadScene, AReleaseOverNodataIsNamedWithThePlace) {
+TEST_F(LoadScene, a_release_over_nodata_is_named_with_the_place) {
     write_valley();
     write_terrain("dem.tif", [](double x, double y) {
         const bool hole = std::abs(x - (west + 32.5)) < 1 && std::abs(y - (south + 102.5)) < 1;
@@ -241,7 +241,7 @@ TEST_F(LoadScene, AReleaseOverNodataIsNamedWithThePlace) {
     EXPECT_THAT(load_error(), AllOf(StartsWith(line(5)), HasSubstr("release \"scarp\" lies over nodata")));
 }
 
-TEST_F(LoadScene, EmptyAndBrokenReleaseLayersAreRefused) {
+TEST_F(LoadScene, empty_and_broken_release_layers_are_refused) {
     write_valley();
     write_features("release.geojson", {});
     EXPECT_THAT(load_error(), AllOf(StartsWith(line(5) + "release[0].file: "), HasSubstr("release.geojson")));
@@ -252,7 +252,7 @@ TEST_F(LoadScene, EmptyAndBrokenReleaseLayersAreRefused) {
     EXPECT_THAT(load_error(), StartsWith(line(5) + "release[0].file: "));
 }
 
-TEST_F(LoadScene, OverlappingReleasesAreNamed) {
+TEST_F(LoadScene, overlapping_releases_are_named) {
     const std::string second = "[[release]]\nname = \"flank\"\nfile = \"flank.geojson\"\nthickness_m = 1\n";
     write_valley(second);
     write_features("flank.geojson", {rectangle(39, 90, 60, 110)});
@@ -263,13 +263,13 @@ TEST_F(LoadScene, OverlappingReleasesAreNamed) {
     EXPECT_EQ(loaded().releases.size(), 2U);
 }
 
-TEST_F(LoadScene, OverlappingPolygonsOfOneReleaseAreRefused) {
+TEST_F(LoadScene, overlapping_polygons_of_one_release_are_refused) {
     write_valley();
     write_features("release.geojson", {rectangle(20, 90, 40, 110), rectangle(25, 95, 30, 100)});
     EXPECT_THAT(load_error(), AllOf(StartsWith(line(5)), HasSubstr("polygons of release \"scarp\" overlap by 25 m2")));
 }
 
-TEST_F(LoadScene, BuildingsTakeHeightAndNameOrSayWhatIsAssumed) {
+TEST_F(LoadScene, buildings_take_height_and_name_or_say_what_is_assumed) {
     write_valley("[buildings]\nfile = \"houses.geojson\"\nheight_attribute = \"h\"\nname_attribute = \"n\"\n");
     write_features("houses.geojson", {rectangle(200, 90, 210, 100, "\"h\": 9, \"n\": \"House 38\""),
                                       rectangle(220, 90, 230, 100, "\"h\": null, \"n\": null"),
@@ -288,7 +288,7 @@ TEST_F(LoadScene, BuildingsTakeHeightAndNameOrSayWhatIsAssumed) {
     EXPECT_THAT(scene.notes, Contains("buildings: the height of 2 of 3 is assumed to be 6 m"));
 }
 
-TEST_F(LoadScene, HeightsWithUnitsAreReadAndOthersAssumed) {
+TEST_F(LoadScene, heights_with_units_are_read_and_others_assumed) {
     write_valley("[buildings]\nfile = \"houses.geojson\"\nheight_attribute = \"height\"\n");
     const std::vector<std::pair<std::string, double>> heights = {
         {"12 m", 12}, {"30 ft", 9.144}, {"12,5", 12.5},   {"40'", 12.192}, {"7", 7},  {"1e1", 10},
@@ -311,7 +311,7 @@ TEST_F(LoadScene, HeightsWithUnitsAreReadAndOthersAssumed) {
                                             HasSubstr("feature 9, \"2 storeys\": after its number comes"))));
 }
 
-TEST_F(LoadScene, EveryAttributeIsReadWithItsUnit) {
+TEST_F(LoadScene, every_attribute_is_read_with_its_unit) {
     write_valley("[buildings]\nfile = \"houses.geojson\"\nresistance_attribute = \"stands\"\n",
                  "thickness_attribute = \"d\"");
     const auto with = [&](const std::string& thickness, const std::string& resistance) {
@@ -331,7 +331,7 @@ TEST_F(LoadScene, EveryAttributeIsReadWithItsUnit) {
                                               "number comes \"bar\"; units are Pa, kPa")));
 }
 
-TEST_F(LoadScene, BuildingsThatCannotBeUsedAreRefused) {
+TEST_F(LoadScene, buildings_that_cannot_be_used_are_refused) {
     write_valley("[buildings]\nfile = \"houses.geojson\"\n");
     write_features("houses.geojson", {rectangle(900, 90, 910, 100)});
     EXPECT_THAT(load_error(),
@@ -341,7 +341,7 @@ TEST_F(LoadScene, BuildingsThatCannotBeUsedAreRefused) {
                 AllOf(StartsWith("--set buildings.height_attribute=h: "), EndsWith("its attributes: height")));
 }
 
-TEST_F(LoadScene, ABuildingOnAReleaseIsLeftOutAndNoted) {
+TEST_F(LoadScene, a_building_on_a_release_is_left_out_and_noted) {
     write_valley("[buildings]\nfile = \"houses.geojson\"\n");
     write_features("houses.geojson", {rectangle(35, 90, 45, 100), rectangle(200, 90, 210, 100)});
     const Scene scene = loaded();
@@ -350,7 +350,7 @@ TEST_F(LoadScene, ABuildingOnAReleaseIsLeftOutAndNoted) {
     EXPECT_THAT(scene.notes, Contains(HasSubstr("\"building 1\" stands on release \"scarp\" with 50 m2")));
 }
 
-TEST_F(LoadScene, AFlowPathFromAFileIsTurnedDownstream) {
+TEST_F(LoadScene, a_flow_path_from_a_file_is_turned_downstream) {
     write_valley("[flow_path]\nfile = \"path.geojson\"\n[[observation]]\nchainage_m = 500\nfront_velocity_mps = 5\n");
     write_features("path.geojson", {R"({"type": "Feature", "properties": {}, "geometry": {"type": "LineString",
         "coordinates": [[824250, 825100], [824130, 825100], [824030, 825100]]}})"});
@@ -362,7 +362,7 @@ TEST_F(LoadScene, AFlowPathFromAFileIsTurnedDownstream) {
     EXPECT_THAT(scene.notes, Contains(HasSubstr("observation[0]: chainage 500 m lies beyond")));
 }
 
-TEST_F(LoadScene, AFlowPathFarFromTheReleaseIsNoted) {
+TEST_F(LoadScene, a_flow_path_far_from_the_release_is_noted) {
     write_valley("[flow_path]\nfile = \"path.geojson\"\n");
     write_features("path.geojson", {R"({"type": "Feature", "properties": {}, "geometry": {"type": "LineString",
         "coordinates": [[824030, 825180], [824250, 825180]]}})"});
@@ -372,7 +372,7 @@ TEST_F(LoadScene, AFlowPathFarFromTheReleaseIsNoted) {
     EXPECT_THAT(load_error(), AllOf(StartsWith(line(8) + "flow_path.file: "), HasSubstr("lies outside the terrain")));
 }
 
-TEST_F(LoadScene, ReprojectedVectorsAreNoted) {
+TEST_F(LoadScene, reprojected_vectors_are_noted) {
     write_valley();
     // About 24 m x 22 m near the valley's top, in longitude and latitude.
     write("release.geojson", R"({"type": "FeatureCollection", "features": [{"type": "Feature", "properties": {},

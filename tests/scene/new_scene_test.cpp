@@ -56,7 +56,7 @@ class NewSceneTest : public SceneFolder {
     NewSceneOptions options;
 };
 
-TEST_F(NewSceneTest, LoadsAndNamesItsInputsRelativeToItself) {
+TEST_F(NewSceneTest, loads_and_names_its_inputs_relative_to_itself) {
     options.volume = 600;
     options.target_particle_count = 5000;
     const NewScene made_scene = made();
@@ -70,7 +70,7 @@ TEST_F(NewSceneTest, LoadsAndNamesItsInputsRelativeToItself) {
     EXPECT_EQ(scene.spec.scene.title, "valley");
 }
 
-TEST_F(NewSceneTest, WorksFromRelativeNames) {
+TEST_F(NewSceneTest, works_from_relative_names) {
     const auto before = std::filesystem::current_path();
     std::filesystem::current_path(folder);
     options.dem = "dem.tif";
@@ -83,13 +83,13 @@ TEST_F(NewSceneTest, WorksFromRelativeNames) {
     EXPECT_EQ(loaded(folder / scene->file).releases.size(), 1U);
 }
 
-TEST_F(NewSceneTest, NoThicknessIsAssumed) {
+TEST_F(NewSceneTest, no_thickness_is_assumed) {
     write_features("release.geojson", {rectangle(20, 90, 40, 110, "\"depth\": 2")});
     EXPECT_THAT(refusal(), AllOf(HasSubstr("(--thickness-m M), or its volume (--volume-m3 M3)"),
                                  HasSubstr("thickness_m or thickness"), HasSubstr("it has depth")));
 }
 
-TEST_F(NewSceneTest, TakesThicknessHeightAndNameFromTheirAttributes) {
+TEST_F(NewSceneTest, takes_thickness_height_and_name_from_their_attributes) {
     write_features("release.geojson", {rectangle(20, 90, 40, 110, "\"thickness_m\": 1.5")});
     write_features("houses.geojson", {rectangle(200, 90, 210, 100, "\"height_m\": 9, \"name\": \"House 38\"")});
     options.buildings = path("houses.geojson");
@@ -100,7 +100,7 @@ TEST_F(NewSceneTest, TakesThicknessHeightAndNameFromTheirAttributes) {
     EXPECT_TRUE(scene.spec.scene.assumptions.empty());
 }
 
-TEST_F(NewSceneTest, FindsAttributesInAnyCase) {
+TEST_F(NewSceneTest, finds_attributes_in_any_case) {
     write_features("release.geojson", {rectangle(20, 90, 40, 110, "\"THICKNESS\": 0.8")});
     write_features("houses.geojson", {rectangle(200, 90, 210, 100, "\"Height\": 11, \"NAME\": \"Hut\"")});
     options.buildings = path("houses.geojson");
@@ -110,14 +110,14 @@ TEST_F(NewSceneTest, FindsAttributesInAnyCase) {
     EXPECT_EQ(scene.buildings.at(0).height, 11);
 }
 
-TEST_F(NewSceneTest, NamesTheColumnsWhereHeightsAreAssumed) {
+TEST_F(NewSceneTest, names_the_columns_where_heights_are_assumed) {
     write_features("houses.geojson", {rectangle(200, 90, 210, 100, "\"storeys\": 2")});
     options.buildings = path("houses.geojson");
     EXPECT_THAT(made().notes, Contains(AllOf(HasSubstr("no attribute height_m or height (it has storeys)"),
                                              HasSubstr("6 m high (buildings.default_height_m)"))));
 }
 
-TEST_F(NewSceneTest, TakesALayerBehindTheNameOrOfTheOption) {
+TEST_F(NewSceneTest, takes_a_layer_behind_the_name_or_of_the_option) {
     const geo::Crs crs{"", "", 2326};
     const auto layer = [&](const char* name, double x) {
         geo::OutputFeature feature;
@@ -143,7 +143,7 @@ TEST_F(NewSceneTest, TakesALayerBehindTheNameOrOfTheOption) {
     EXPECT_THAT(refusal(), HasSubstr("names the layer \"houses\", and the option \"release 2024\""));
 }
 
-TEST_F(NewSceneTest, TakesOneFeatureOfSeveral) {
+TEST_F(NewSceneTest, takes_one_feature_of_several) {
     write_features("release.geojson", {rectangle(20, 90, 40, 110, "\"Name\": \"upper\", \"thickness_m\": 2"),
                                        rectangle(60, 90, 90, 110, "\"Name\": \"lower\", \"thickness_m\": 1")});
     options.release_feature = "name=middle";
@@ -158,7 +158,7 @@ TEST_F(NewSceneTest, TakesOneFeatureOfSeveral) {
     EXPECT_EQ(scene.spec.releases.at(0).file, (options.folder / "release.gpkg").string());
 }
 
-TEST_F(NewSceneTest, TakesTheExtentAndCoarserCells) {
+TEST_F(NewSceneTest, takes_the_extent_and_coarser_cells) {
     options.extent = Extent{west + 10, south + 50, west + 200, south + 150};
     options.cell = 10;
     const NewScene coarse = made();
@@ -172,7 +172,7 @@ TEST_F(NewSceneTest, TakesTheExtentAndCoarserCells) {
     EXPECT_EQ(loaded(made().file).terrain.elevation().geometry, (GridGeometry{west + 10, south + 50, 5, 38, 20}));
 }
 
-TEST_F(NewSceneTest, RefusesAnExtentOrCellsThatCannotBe) {
+TEST_F(NewSceneTest, refuses_an_extent_or_cells_that_cannot_be) {
     options.extent = Extent{west + 200, south, west, south + 100};
     EXPECT_THAT(refusal(), HasSubstr("it must be XMIN YMIN XMAX YMAX"));
     options.extent = Extent{west + 100, south, west + 300, south + 200};
@@ -184,7 +184,7 @@ TEST_F(NewSceneTest, RefusesAnExtentOrCellsThatCannotBe) {
     EXPECT_THAT(refusal(), HasSubstr("whole multiple of 5 m, the cells of " + path("dem.tif") + ": 10 or 15"));
 }
 
-TEST_F(NewSceneTest, OfALargeRasterOnlyWhatDebrisCanReachIsRead) {
+TEST_F(NewSceneTest, of_a_large_raster_only_what_debris_can_reach_is_read) {
     // 300 million cells over 100 km x 75 km that hold nothing; the ground of the valley lies in one block.
     char** sparse = CSLAddString(CSLAddString(nullptr, "SPARSE_OK=TRUE"), "TILED=YES");
     GDALAllRegister();
@@ -218,7 +218,7 @@ TEST_F(NewSceneTest, OfALargeRasterOnlyWhatDebrisCanReachIsRead) {
     EXPECT_LT(large.width(), 2000);
 }
 
-TEST_F(NewSceneTest, ReadsArchivesAndNamesThemInTheScene) {
+TEST_F(NewSceneTest, reads_archives_and_names_them_in_the_scene) {
     ASSERT_TRUE(geo::write_zip(path("dem.zip"), {{"valley.tif", path("dem.tif"), {}}}));
     ASSERT_TRUE(geo::write_zip(path("scar.zip"), {{"scar.geojson", path("release.geojson"), {}}}));
     options.dem = path("dem.zip");
@@ -235,7 +235,7 @@ TEST_F(NewSceneTest, ReadsArchivesAndNamesThemInTheScene) {
     EXPECT_THAT(scene.inputs, Contains(testing::Field(&InputFile::path, path("dem.zip"))));
 }
 
-TEST_F(NewSceneTest, TheExtentLeavesOutWhatDebrisCannotReach) {
+TEST_F(NewSceneTest, the_extent_leaves_out_what_debris_cannot_reach) {
     // Ground that climbs away from the release on both sides, and level ground 100 m down the way.
     write_terrain("dem.tif", [](double x, double y) {
         return 100 + 1.5 * std::abs(y - (south + 100)) - 0.1 * std::min(x - west, 100.0);
@@ -248,7 +248,7 @@ TEST_F(NewSceneTest, TheExtentLeavesOutWhatDebrisCannotReach) {
     EXPECT_EQ(std::fmod(extent.x_min - west, cell), 0);
 }
 
-TEST_F(NewSceneTest, RefusesAFolderThatIsThere) {
+TEST_F(NewSceneTest, refuses_a_folder_that_is_there) {
     std::filesystem::create_directories(options.folder);
     write("new/valley/mine.txt", "keep");
     const auto scene = write_new_scene(options);
@@ -257,7 +257,7 @@ TEST_F(NewSceneTest, RefusesAFolderThatIsThere) {
     EXPECT_TRUE(std::filesystem::exists(options.folder / "mine.txt"));
 }
 
-TEST_F(NewSceneTest, BadInputsLeaveNothingBehind) {
+TEST_F(NewSceneTest, bad_inputs_leave_nothing_behind) {
     options.dem = path("absent.tif");
     EXPECT_THAT(refusal(), HasSubstr("absent.tif"));
     options.dem = path("dem.tif");
@@ -274,7 +274,7 @@ TEST_F(NewSceneTest, BadInputsLeaveNothingBehind) {
     EXPECT_THAT(refusal(), HasSubstr("lies outside the terrain"));
 }
 
-TEST_F(NewSceneTest, AFolderThatCannotBeMadeIsNamed) {
+TEST_F(NewSceneTest, a_folder_that_cannot_be_made_is_named) {
     write("file", "");
     options.folder = folder / "file" / "valley";
     const auto scene = write_new_scene(options);
@@ -282,7 +282,7 @@ TEST_F(NewSceneTest, AFolderThatCannotBeMadeIsNamed) {
     EXPECT_THAT(scene.error().message, AllOf(HasSubstr("valley"), HasSubstr("cannot be made")));
 }
 
-TEST(ReachableExtent, FollowsTheEnergyLineOverALevelPlain) {
+TEST(ReachableExtent, follows_the_energy_line_over_a_level_plain) {
     // A step of 20 m down to a plain: at 45 degrees debris gets 20 m plus its thickness of 1 m away from the edge.
     Grid<float> elevation(GridGeometry{0, 0, 1, 100, 21});
     for (int row = 0; row < 21; ++row) {
@@ -295,7 +295,7 @@ TEST(ReachableExtent, FollowsTheEnergyLineOverALevelPlain) {
     EXPECT_NEAR(reach.x_min, 5 - 1, 1.01);
 }
 
-TEST(ReachableExtent, NodataIsNotCrossed) {
+TEST(ReachableExtent, nodata_is_not_crossed) {
     Grid<float> elevation(GridGeometry{0, 0, 1, 100, 5});
     for (int row = 0; row < 5; ++row) {
         for (int column = 0; column < 100; ++column) elevation.at(column, row) = static_cast<float>(100 - column);
@@ -308,7 +308,7 @@ TEST(ReachableExtent, NodataIsNotCrossed) {
 
 class DescribeScene : public SceneFolder {};
 
-TEST_F(DescribeScene, TellsWhatARunWouldTake) {
+TEST_F(DescribeScene, tells_what_a_run_would_take) {
     write_valley("[buildings]\nfile = \"houses.geojson\"\n", "volume_m3 = 512");
     write_features("houses.geojson", {rectangle(200, 90, 210, 100)});
     const auto scene = load_scene(folder / "scene.toml", {"solver.particle_spacing_m=0.8"});

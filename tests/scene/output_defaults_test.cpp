@@ -23,7 +23,7 @@ class GeoidOfAScene : public SceneFolder {
     }
 };
 
-TEST_F(GeoidOfAScene, IsLookedUpOrMissedWhereOutputsNeedIt) {
+TEST_F(GeoidOfAScene, is_looked_up_or_missed_where_outputs_need_it) {
     const Scene scene = loaded("series = [\"3dtiles\"]\n");
     EXPECT_THAT(scene.notes, Contains(StartsWith("3dtiles: ")));
     if (scene.spec.outputs.geoid_height) {
@@ -35,13 +35,13 @@ TEST_F(GeoidOfAScene, IsLookedUpOrMissedWhereOutputsNeedIt) {
     }
 }
 
-TEST_F(GeoidOfAScene, IsTheOneThatItGives) {
+TEST_F(GeoidOfAScene, is_the_one_that_it_gives) {
     const Scene scene = loaded("series = [\"3dtiles\"]\ngeoid_height_m = -1.5\n");
     EXPECT_EQ(scene.spec.outputs.geoid_height, -1.5);
     EXPECT_THAT(scene.notes, Not(Contains(StartsWith("3dtiles: "))));
 }
 
-TEST_F(GeoidOfAScene, IsNotSpokenOfWhereNoOutputNeedsIt) {
+TEST_F(GeoidOfAScene, is_not_spoken_of_where_no_output_needs_it) {
     const Scene scene = loaded("series = [\"gltf\"]\n");
     EXPECT_FALSE(scene.spec.outputs.geoid_height);
     EXPECT_THAT(scene.notes, Not(Contains(StartsWith("3dtiles: "))));

@@ -45,7 +45,7 @@ class ParseScene : public SceneFolder {
         "[terrain]\nfile = \"dem.tif\"\n[[release]]\nfile = \"release.geojson\"\nthickness_m = 2\n";
 };
 
-TEST_F(ParseScene, ReadsEverySectionAndKeepsDefaults) {
+TEST_F(ParseScene, reads_every_section_and_keeps_defaults) {
     const params::SceneSpec spec = parsed(minimal + R"([scene]
 title = "Häng"
 assumptions = ["one", "two"]
@@ -71,7 +71,7 @@ front_velocity_mps = 11
     EXPECT_EQ(spec.observations.at(0).chainage, 121);
 }
 
-TEST_F(ParseScene, UnknownKeysNameTheNearestOne) {
+TEST_F(ParseScene, unknown_keys_name_the_nearest_one) {
     EXPECT_EQ(error_after("[material]\nviscocity = 0.1\n"),
               line(7) + "unknown key \"viscocity\" in [material]; nearest known key: viscosity");
     EXPECT_THAT(error_after("[solver]\n\nparticle_spacing = 0.1\n"), EndsWith("nearest known key: particle_spacing_m"));
@@ -79,7 +79,7 @@ TEST_F(ParseScene, UnknownKeysNameTheNearestOne) {
               line(7) + "unknown key \"viscosity\" in [outputs]; it belongs in [material]");
 }
 
-TEST_F(ParseScene, UnknownKeysOfOtherProgramsLeadToTheKeyOfTheSameMeaning) {
+TEST_F(ParseScene, unknown_keys_of_other_programs_lead_to_the_key_of_the_same_meaning) {
     EXPECT_EQ(error_after("[material]\nmu = 0.2\n"),
               line(7) + "unknown key \"mu\" in [material]; here it is called friction_coefficient or viscosity");
     EXPECT_THAT(error_after("[material]\nxi = 500\n"), EndsWith("here it is called turbulent_friction_mps2"));
@@ -91,7 +91,7 @@ TEST_F(ParseScene, UnknownKeysOfOtherProgramsLeadToTheKeyOfTheSameMeaning) {
               line(1) + "key \"xi\" stands outside a section; it belongs in [material] as turbulent_friction_mps2");
 }
 
-TEST_F(ParseScene, ControlCharactersDoNotReachTheTerminal) {
+TEST_F(ParseScene, control_characters_do_not_reach_the_terminal) {
     for (const std::string text : {"[solver]\n\"\\u001b[31m\\n\" = 1\n", "[solver]\nkernel = \"\\u001b[31m\\n\"\n",
                                    "[\"\\u001b[31m\"]\n", "[buildings]\nfile = \"a\\u0000b\"\n"}) {
         const std::string message = error_after(text);
@@ -100,13 +100,13 @@ TEST_F(ParseScene, ControlCharactersDoNotReachTheTerminal) {
     }
 }
 
-TEST_F(ParseScene, UnknownSectionsNameTheNearestOne) {
+TEST_F(ParseScene, unknown_sections_name_the_nearest_one) {
     EXPECT_EQ(error_after("[materials]\n"), line(6) + "unknown section \"materials\"; nearest known section: material");
     EXPECT_EQ(error_of("title = \"a\"\n" + minimal),
               line(1) + "key \"title\" stands outside a section; it belongs in [scene]");
 }
 
-TEST_F(ParseScene, WrongTypesNameKeyValueAndKind) {
+TEST_F(ParseScene, wrong_types_name_key_value_and_kind) {
     EXPECT_EQ(error_after("[material]\nviscosity = \"high\"\n"),
               line(7) + "material.viscosity = 'high' is refused; it must be a number from 0 to below 1");
     EXPECT_THAT(error_after("[solver]\niteration_count = 2.5\n"),
@@ -120,7 +120,7 @@ TEST_F(ParseScene, WrongTypesNameKeyValueAndKind) {
                 EndsWith("a number greater than 0 and at most 10000000 (s)"));
 }
 
-TEST_F(ParseScene, ValuesOutOfRangeNameTheRange) {
+TEST_F(ParseScene, values_out_of_range_name_the_range) {
     EXPECT_EQ(error_after("[material]\nviscosity = 1\n"),
               line(7) + "material.viscosity = 1 is refused; it must be a number from 0 to below 1");
     EXPECT_EQ(error_after("[solver]\nkernel = \"gauss\"\n"),
@@ -134,7 +134,7 @@ TEST_F(ParseScene, ValuesOutOfRangeNameTheRange) {
     EXPECT_THAT(error_of("[terrain]\nextent_m = [0, 0, 1]\n"), HasSubstr("[x_min, y_min, x_max, y_max]"));
 }
 
-TEST_F(ParseScene, ZeroAndNegativeThicknessAreRefused) {
+TEST_F(ParseScene, zero_and_negative_thickness_are_refused) {
     const std::string start = "[terrain]\nfile = \"dem.tif\"\n[[release]]\nfile = \"r.gpkg\"\n";
     EXPECT_EQ(error_of(start + "thickness_m = 0\n"),
               line(5) + "release[0].thickness_m = 0 is refused; it must be a number from 0.001 to 1000 (m)");
@@ -142,7 +142,7 @@ TEST_F(ParseScene, ZeroAndNegativeThicknessAreRefused) {
     EXPECT_THAT(error_of(start + "volume_m3 = 0\n"), StartsWith(line(5) + "release[0].volume_m3 = 0 is refused"));
 }
 
-TEST_F(ParseScene, MissingKeysAreNamed) {
+TEST_F(ParseScene, missing_keys_are_named) {
     EXPECT_EQ(error_of("[[release]]\nfile = \"r.gpkg\"\nthickness_m = 2\n"),
               file() + ": terrain.file is missing; it must be a file path in quotes");
     EXPECT_EQ(error_of("\n[terrain]\nband = 1\n[[release]]\nfile = \"r.gpkg\"\n"),
@@ -158,7 +158,7 @@ TEST_F(ParseScene, MissingKeysAreNamed) {
     EXPECT_THAT(error_of("[terrain]\nfile = \"\"\n"), EndsWith("not empty"));
 }
 
-TEST_F(ParseScene, ExactlyOneSourceOfThickness) {
+TEST_F(ParseScene, exactly_one_source_of_thickness) {
     const std::string start = "[terrain]\nfile = \"dem.tif\"\n[[release]]\nfile = \"r.gpkg\"\n";
     EXPECT_EQ(error_of(start), line(4) +
                                    "release[0].file: exactly one of thickness_m, thickness_attribute, "
@@ -167,7 +167,7 @@ TEST_F(ParseScene, ExactlyOneSourceOfThickness) {
                 AllOf(StartsWith(line(6)), EndsWith("given are thickness_m, volume_m3")));
 }
 
-TEST_F(ParseScene, OneSectionOrSeveral) {
+TEST_F(ParseScene, one_section_or_several) {
     EXPECT_EQ(error_of("[terrain]\nfile = \"dem.tif\"\n[release]\nfile = \"r.gpkg\"\n"),
               line(3) + "there can be several of release; write [[release]]");
     EXPECT_EQ(error_of("[[terrain]]\nfile = \"dem.tif\"\n"), line(1) + "terrain must be one section; write [terrain]");
@@ -175,7 +175,7 @@ TEST_F(ParseScene, OneSectionOrSeveral) {
     EXPECT_THAT(error_of("release = [1]\n"), StartsWith(line(1) + "release must be sections"));
 }
 
-TEST_F(ParseScene, TomlErrorsNameTheLine) {
+TEST_F(ParseScene, toml_errors_name_the_line) {
     EXPECT_THAT(error_after("[solver]\nend_time_s = 1\nend_time_s = 2\n"),
                 AllOf(StartsWith(line(8) + "not valid TOML: "), HasSubstr("end_time_s")));
     EXPECT_THAT(error_after("[terrain]\n"), StartsWith(line(6) + "not valid TOML: "));
@@ -186,7 +186,7 @@ TEST_F(ParseScene, TomlErrorsNameTheLine) {
     EXPECT_THAT(error_of("[[[[[[[[[[[\n"), StartsWith(line(1) + "not valid TOML: "));
 }
 
-TEST_F(ParseScene, ValuesThatContradictEachOtherAreNamed) {
+TEST_F(ParseScene, values_that_contradict_each_other_are_named) {
     EXPECT_EQ(error_after("[solver]\nsmallest_time_step_s = 0.1\n"),
               line(7) +
                   "solver.smallest_time_step_s = 0.1 is refused; smallest_time_step_s = 0.1 must not be above "
@@ -195,7 +195,7 @@ TEST_F(ParseScene, ValuesThatContradictEachOtherAreNamed) {
               line(6) + "release[0].start_time_s = 120 is refused; it must be below solver.end_time_s = 120");
 }
 
-TEST_F(ParseScene, UnreadableFilesAreNamed) {
+TEST_F(ParseScene, unreadable_files_are_named) {
     const auto error = [](const std::string& name) { return parse_scene(name).error().message; };
     EXPECT_EQ(error(path("absent.toml")), path("absent.toml") + ": no such scene file");
     EXPECT_THAT(error(folder.string()), HasSubstr("is a folder, not a scene file"));
@@ -206,13 +206,13 @@ TEST_F(ParseScene, UnreadableFilesAreNamed) {
     EXPECT_THAT(error(path("large.toml")), HasSubstr("larger than 16 MB"));
 }
 
-TEST_F(ParseScene, AByteOrderMarkAndWindowsLineEndsAreFine) {
+TEST_F(ParseScene, a_byte_order_mark_and_windows_line_ends_are_fine) {
     const params::SceneSpec spec =
         parsed("\xef\xbb\xbf[terrain]\r\nfile = \"dem.tif\"\r\n[[release]]\r\nfile = \"r\"\r\nthickness_m = 2\r\n");
     EXPECT_EQ(spec.releases.size(), 1U);
 }
 
-TEST_F(ParseScene, EveryTruncationOfASceneIsOneLineOrParses) {
+TEST_F(ParseScene, every_truncation_of_a_scene_is_one_line_or_parses) {
     const std::string whole =
         minimal + "[scene]\ntitle = \"\xc3\xa4\\u00e4\"\nsources = [\"a\", 'b']\n[solver]\nkernel = 'spiky'\n";
     for (std::size_t length = 0; length < whole.size(); ++length) {
@@ -221,7 +221,7 @@ TEST_F(ParseScene, EveryTruncationOfASceneIsOneLineOrParses) {
     }
 }
 
-TEST_F(ParseScene, PathsAreTakenFromTheScenesFolderAndTheEnvironment) {
+TEST_F(ParseScene, paths_are_taken_from_the_scenes_folder_and_the_environment) {
     setenv("TALUS_TEST_DATA", "/somewhere", 1);
     unsetenv("TALUS_TEST_ABSENT");
     const std::string rest = "[[release]]\nfile = \"sub/../r.gpkg\"\nvolume_m3 = 600\n";
@@ -239,7 +239,7 @@ TEST_F(ParseScene, PathsAreTakenFromTheScenesFolderAndTheEnvironment) {
     EXPECT_EQ(parsed("[terrain]\nfile = 'NETCDF:\"a.nc\":z'\n" + rest).terrain.file, "NETCDF:\"a.nc\":z");
 }
 
-TEST_F(ParseScene, OverridesReplaceValues) {
+TEST_F(ParseScene, overrides_replace_values) {
     const params::SceneSpec spec = parsed(
         minimal + "[[release]]\nfile = \"b\"\nvolume_m3 = 5\n",
         {"solver.particle_spacing_m=0.25", "solver.kernel=spiky", "release[1].volume_m3=7", "terrain.file=other.tif",
@@ -258,7 +258,7 @@ TEST_F(ParseScene, OverridesReplaceValues) {
     EXPECT_EQ(spec.material.viscosity, 0.05);
 }
 
-TEST_F(ParseScene, OverridesAreCheckedLikeTheFile) {
+TEST_F(ParseScene, overrides_are_checked_like_the_file) {
     const auto error = [&](const std::string& text) { return error_after("", {text}); };
     EXPECT_EQ(error("material.viscosity=2"),
               "--set material.viscosity=2: material.viscosity = 2 is refused; it must be a number from 0 to below 1");
@@ -282,7 +282,7 @@ TEST_F(ParseScene, OverridesAreCheckedLikeTheFile) {
                 AllOf(StartsWith("--set release.volume_m3=3: "), HasSubstr("given are thickness_m, volume_m3")));
 }
 
-TEST_F(ParseScene, AWrittenSceneParsesToTheSameValues) {
+TEST_F(ParseScene, a_written_scene_parses_to_the_same_values) {
     params::SceneSpec spec;
     spec.scene.title = "A \"title\"\nof two lines \xc3\xa4";
     spec.scene.assumptions = {"first, with comma", "second"};
@@ -312,7 +312,7 @@ TEST_F(ParseScene, AWrittenSceneParsesToTheSameValues) {
     EXPECT_EQ(before, after);
 }
 
-TEST_F(ParseScene, EveryCommentedDefaultOfAWrittenSceneIsValid) {
+TEST_F(ParseScene, every_commented_default_of_a_written_scene_is_valid) {
     params::SceneSpec spec;
     spec.terrain.file = "dem.tif";
     spec.releases.resize(1);

@@ -32,7 +32,7 @@ set = ["material.friction_coefficient=0.5"]
 )";
 };
 
-TEST_F(ParseVariants, ChangeNothingUntilTheyAreTaken) {
+TEST_F(ParseVariants, change_nothing_until_they_are_taken) {
     const auto given = parsed(two);
     ASSERT_TRUE(given) << given.error().message;
     EXPECT_EQ(given->variants.size(), 2U);
@@ -44,13 +44,13 @@ TEST_F(ParseVariants, ChangeNothingUntilTheyAreTaken) {
     EXPECT_FALSE(wet->releases[0].thickness);
 }
 
-TEST_F(ParseVariants, ComeInTheOrderOfOverrides) {
+TEST_F(ParseVariants, come_in_the_order_of_overrides) {
     EXPECT_EQ(parsed(two, {"variant=wet", "material.friction_coefficient=0.2"})->material.friction_coefficient, 0.2);
     EXPECT_EQ(parsed(two, {"material.friction_coefficient=0.2", "variant=wet"})->material.friction_coefficient, 0.1);
     EXPECT_EQ(parsed(two, {"variant=wet", "variant=dry"})->releases[0].volume, 50);
 }
 
-TEST_F(ParseVariants, AreRefusedWithTheirLineAlsoWhereTheyAreNotTaken) {
+TEST_F(ParseVariants, are_refused_with_their_line_also_where_they_are_not_taken) {
     const auto of = [&](const std::string& setting) {
         return error_of("[[variant]]\nname = \"wet\"\nset = [\"" + setting + "\"]\n");
     };
@@ -64,7 +64,7 @@ TEST_F(ParseVariants, AreRefusedWithTheirLineAlsoWhereTheyAreNotTaken) {
                 HasSubstr("variant[0].name = \"wet\" is refused; 2 variants have that name"));
 }
 
-TEST_F(ParseVariants, AreWrittenWithTheScene) {
+TEST_F(ParseVariants, are_written_with_the_scene) {
     const auto given = parsed(two);
     ASSERT_TRUE(given) << given.error().message;
     write("scene.toml", write_scene(*given));

@@ -38,14 +38,14 @@ class ParticleSpacing : public SceneFolder {
     }
 };
 
-TEST_F(ParticleSpacing, IsThatOfTenThousandParticlesWhereNothingIsNamed) {
+TEST_F(ParticleSpacing, is_that_of_ten_thousand_particles_where_nothing_is_named) {
     write_valley();
     EXPECT_NEAR(total_volume(loaded()) / std::pow(spacing(), 3), 10000, 1e-6);
     EXPECT_NEAR(total_volume(loaded()) / std::pow(spacing({"solver.target_particle_count=800"}), 3), 800, 1e-6);
     EXPECT_EQ(spacing({"solver.particle_spacing_m=0.7"}), 0.7);
 }
 
-TEST_F(ParticleSpacing, OfLayersIsTheThicknessNormalToTheSlopeOverTheirNumber) {
+TEST_F(ParticleSpacing, of_layers_is_the_thickness_normal_to_the_slope_over_their_number) {
     write_valley();
     EXPECT_EQ(spacing({"solver.target_layers=4"}), 0.5) << "the release is 2 m thick";
     EXPECT_EQ(spacing({"solver.target_layers=3"}), 0.6667) << "to four digits, so that what is printed repeats the run";
@@ -56,7 +56,7 @@ TEST_F(ParticleSpacing, OfLayersIsTheThicknessNormalToTheSlopeOverTheirNumber) {
     EXPECT_LT(spacing({"solver.target_layers=4"}), 0.46);
 }
 
-TEST_F(ParticleSpacing, OfLayersFollowsTheThinnestReleaseOrInflow) {
+TEST_F(ParticleSpacing, of_layers_follows_the_thinnest_release_or_inflow) {
     const std::string second = "[[release]]\nname = \"patch\"\nfile = \"patch.geojson\"\nthickness_m = 0.8\n";
     write_features("patch.geojson", {rectangle(60, 90, 70, 100)});
     write_valley(second);
@@ -69,7 +69,7 @@ TEST_F(ParticleSpacing, OfLayersFollowsTheThinnestReleaseOrInflow) {
     EXPECT_EQ(spacing({"solver.target_layers=2"}), 0.4) << "of rain the thickness is not known";
 }
 
-TEST_F(ParticleSpacing, OfLayersNeedsAThickness) {
+TEST_F(ParticleSpacing, of_layers_needs_a_thickness) {
     write("surge.csv", "time_s,discharge_m3ps,velocity_mps\n0,10,2\n3,10,2\n");
     write_valley();
     write("scene.toml", "[terrain]\nfile = \"dem.tif\"\n" + rain() + "[solver]\ntarget_layers = 3\n");
@@ -77,7 +77,7 @@ TEST_F(ParticleSpacing, OfLayersNeedsAThickness) {
                                     EndsWith("give solver.particle_spacing_m")));
 }
 
-TEST_F(ParticleSpacing, LayersBeyondTheParticleLimitAreRefusedWithTheirRange) {
+TEST_F(ParticleSpacing, layers_beyond_the_particle_limit_are_refused_with_their_range) {
     write_valley("[solver]\nparticle_limit = 8000\n");
     const double volume = total_volume(loaded({"solver.target_layers=1"})), most = 2 * std::cbrt(8000 / volume);
     ASSERT_GT(most, 4);
@@ -92,7 +92,7 @@ TEST_F(ParticleSpacing, LayersBeyondTheParticleLimitAreRefusedWithTheirRange) {
     EXPECT_THAT(load_error({"solver.target_layers=0.5"}), HasSubstr("a number from 1 to 1000"));
 }
 
-TEST_F(ParticleSpacing, IsChosenByOneKeyOfAFile) {
+TEST_F(ParticleSpacing, is_chosen_by_one_key_of_a_file) {
     write_valley("[solver]\ntarget_particle_count = 800\ntarget_layers = 3\n");
     EXPECT_THAT(load_error(), AllOf(HasSubstr("scene.toml:8: solver.target_particle_count: at most one of "
                                               "particle_spacing_m, target_layers, target_particle_count may be given; "
@@ -104,7 +104,7 @@ TEST_F(ParticleSpacing, IsChosenByOneKeyOfAFile) {
     EXPECT_THAT(load_error({"variant=fine"}), HasSubstr("at most one of"));
 }
 
-TEST_F(ParticleSpacing, OfAnOverrideReplacesThatOfTheFile) {
+TEST_F(ParticleSpacing, of_an_override_replaces_that_of_the_file) {
     write_valley(
         "[solver]\ntarget_particle_count = 800\n[[variant]]\nname = \"fine\"\nset = [\"solver.target_layers=4\"]\n");
     EXPECT_EQ(spacing({"solver.target_layers=2"}), 1);

@@ -35,7 +35,7 @@ class ReleaseShift : public SceneFolder {
     }
 };
 
-TEST_F(ReleaseShift, AlongIsDownTheSlopeAndAcrossToTheLeft) {
+TEST_F(ReleaseShift, along_is_down_the_slope_and_across_to_the_left) {
     const PlanPoint along = moved({"release.shift_along_m=10"});
     EXPECT_NEAR(along.x, 8, 1e-3);
     EXPECT_NEAR(along.y, 6, 1e-3);
@@ -47,13 +47,13 @@ TEST_F(ReleaseShift, AlongIsDownTheSlopeAndAcrossToTheLeft) {
     EXPECT_NEAR(both.y, -3 + 1.6, 1e-3);
 }
 
-TEST_F(ReleaseShift, KeepsTheVolumeAndIsNoted) {
+TEST_F(ReleaseShift, keeps_the_volume_and_is_noted) {
     const Scene shifted = loaded({"release.shift_along_m=10"});
     EXPECT_NEAR(shifted.releases[0].volume, loaded().releases[0].volume, 1e-3);
     EXPECT_THAT(shifted.notes, Contains(HasSubstr("release \"scarp\": moved by 8 m to the east and 6 m to the north")));
 }
 
-TEST_F(ReleaseShift, TakesTheRasterOfThicknessAlong) {
+TEST_F(ReleaseShift, takes_the_raster_of_thickness_along) {
     write_terrain("thickness.tif", [](double x, double) { return x < west + 110 ? 1.0 : 3.0; });
     const std::vector<std::string> raster{"release.thickness_m=none", "release.thickness_raster=thickness.tif"};
     std::vector<std::string> shifted = raster;
@@ -65,7 +65,7 @@ TEST_F(ReleaseShift, TakesTheRasterOfThicknessAlong) {
     }
 }
 
-TEST_F(ReleaseShift, BeyondTheTerrainOrOnLevelGroundIsRefused) {
+TEST_F(ReleaseShift, beyond_the_terrain_or_on_level_ground_is_refused) {
     EXPECT_THAT(load_error({"release.shift_along_m=400"}),
                 AllOf(StartsWith("--set release.shift_along_m=400: release[0].shift_along_m: "),
                       HasSubstr("lies outside the terrain")));

@@ -43,7 +43,7 @@ class Structures : public SceneFolder {
     }
 };
 
-TEST_F(Structures, BarriersComeBehindTheBuildings) {
+TEST_F(Structures, barriers_come_behind_the_buildings) {
     write_features("houses.geojson", {rectangle(200, 90, 210, 110)});
     write_valley("[buildings]\nfile = \"houses.geojson\"\nresistance_Pa = 40000\n" +
                  dam("crest_elevation_m = 165\nresistance_Npm = 9e4") +
@@ -60,7 +60,7 @@ TEST_F(Structures, BarriersComeBehindTheBuildings) {
     EXPECT_EQ(scene.buildings[1].barrier->openings[0].sill, 1);
 }
 
-TEST_F(Structures, EveryLineOfAFileIsABarrier) {
+TEST_F(Structures, every_line_of_a_file_is_a_barrier) {
     const auto dam_at = [](double x, const std::string& properties) {
         return fmt::format(R"({{"type": "Feature", "properties": {{{0}}}, "geometry": {{"type": "LineString", )"
                            R"("coordinates": [[{1}, {2}], [{1}, {3}]]}}}})",
@@ -86,7 +86,7 @@ TEST_F(Structures, EveryLineOfAFileIsABarrier) {
         << "names that are not unique are replaced by numbers";
 }
 
-TEST_F(Structures, OneLineIsNeededForAFlowPathAndForAnInflow) {
+TEST_F(Structures, one_line_is_needed_for_a_flow_path_and_for_an_inflow) {
     const std::string line = fmt::format(R"({{"type": "Feature", "properties": {{}}, "geometry": {{"type": )"
                                          R"("LineString", "coordinates": [[{}, {}], [{}, {}]]}}}})",
                                          west + 45, south + 95, west + 45, south + 105);
@@ -98,7 +98,7 @@ TEST_F(Structures, OneLineIsNeededForAFlowPathAndForAnInflow) {
     EXPECT_THAT(load_error(), AllOf(HasSubstr("inflow[0].file: "), HasSubstr("has 2 lines, one is needed")));
 }
 
-TEST_F(Structures, ABarrierWithAPassingShareIsANet) {
+TEST_F(Structures, a_barrier_with_a_passing_share_is_a_net) {
     write_valley(dam("height_m = 8\npassing_share = 0.35"));
     const Scene scene = loaded();
     ASSERT_TRUE(scene.buildings[0].barrier);
@@ -111,7 +111,7 @@ TEST_F(Structures, ABarrierWithAPassingShareIsANet) {
     }
 }
 
-TEST_F(Structures, ANetHoldsMoreThanASlotLetsThroughAndEverythingIsAccountedFor) {
+TEST_F(Structures, a_net_holds_more_than_a_slot_lets_through_and_everything_is_accounted_for) {
     write_valley(dam("height_m = 8"));
     const run::RunResult wall = run();
     write_valley(dam("height_m = 8\npassing_share = 0.5"));
@@ -130,7 +130,7 @@ TEST_F(Structures, ANetHoldsMoreThanASlotLetsThroughAndEverythingIsAccountedFor)
     EXPECT_EQ(at_net.history.back().passed_volume, at_net.passed_volume);
 }
 
-TEST_F(Structures, BuildingsMayBeAMesh) {
+TEST_F(Structures, buildings_may_be_a_mesh) {
     // Two boxes side by side on ground at about 97 to 103 m, with roofs at 106 and 109 m; a third one far away.
     std::string obj;
     int vertex = 1;
@@ -168,7 +168,7 @@ TEST_F(Structures, BuildingsMayBeAMesh) {
     EXPECT_THAT(load_error(), HasSubstr("buildings.file: " + path("houses.obj") + ":1: a vertex needs three"));
 }
 
-TEST_F(Structures, ABarriersLineMayBeAFile) {
+TEST_F(Structures, a_barriers_line_may_be_a_file) {
     write("line.geojson",
           fmt::format(R"({{"type": "FeatureCollection", "crs": {{"type": "name", "properties": {{"name": )"
                       R"("urn:ogc:def:crs:EPSG::2326"}}}}, "features": [{{"type": "Feature", "properties": {{}}, )"
@@ -181,7 +181,7 @@ TEST_F(Structures, ABarriersLineMayBeAFile) {
     EXPECT_EQ(scene.inputs.back().role, "barrier \"barrier 1\"");
 }
 
-TEST_F(Structures, BadBarriersAreRefusedByKey) {
+TEST_F(Structures, bad_barriers_are_refused_by_key) {
     const auto refusal = [&](const std::string& text) {
         write_valley(text);
         return load_error();
@@ -208,7 +208,7 @@ TEST_F(Structures, BadBarriersAreRefusedByKey) {
                 HasSubstr("stands on release \"scarp\""));
 }
 
-TEST_F(Structures, ADamHoldsDebrisAndItsSlotLetsSomeThrough) {
+TEST_F(Structures, a_dam_holds_debris_and_its_slot_lets_some_through) {
     write_valley(dam());
     const run::RunResult held = run();
     const observe::BuildingImpact& dam_alone = held.observation.buildings.at(0);
@@ -224,7 +224,7 @@ TEST_F(Structures, ADamHoldsDebrisAndItsSlotLetsSomeThrough) {
     EXPECT_LT(open.observation.buildings.at(0).retained_volume, dam_alone.retained_volume);
 }
 
-TEST_F(Structures, AResistanceThatIsExceededBringsItDownTheSameOnAnyNumberOfThreads) {
+TEST_F(Structures, a_resistance_that_is_exceeded_brings_it_down_the_same_on_any_number_of_threads) {
     write_valley(dam());
     const run::RunResult stood = run();
     const double peak = stood.observation.buildings.at(0).peak_force / 60;  // N/m
@@ -242,7 +242,7 @@ TEST_F(Structures, AResistanceThatIsExceededBringsItDownTheSameOnAnyNumberOfThre
     EXPECT_EQ(strong.hash, stood.hash) << "a resistance that is not exceeded changes nothing";
 }
 
-TEST_F(Structures, InflowBringsItsVolumeToTheParticle) {
+TEST_F(Structures, inflow_brings_its_volume_to_the_particle) {
     write_valley();
     write("surge.csv", "time_s,discharge_m3ps,velocity_mps\n0,0,4\n2,40,6\n4,0,4\n6,0,4\n7,30,5\n8,0,5\n");
     write("scene.toml", "[terrain]\nfile = \"dem.tif\"\n" + inflow());
@@ -262,7 +262,7 @@ TEST_F(Structures, InflowBringsItsVolumeToTheParticle) {
     EXPECT_GT(result.observation.run_out.along_flow, 5);
 }
 
-TEST_F(Structures, InflowAndReleaseRunTogether) {
+TEST_F(Structures, inflow_and_release_run_together) {
     write("surge.csv", "time_s,discharge_m3ps,velocity_mps\n1,20,6\n4,20,6\n");
     write_valley(inflow());
     const run::RunResult result = run();
@@ -271,7 +271,7 @@ TEST_F(Structures, InflowAndReleaseRunTogether) {
                 0.5 * std::pow(result.particle_spacing, 3) * 2);
 }
 
-TEST_F(Structures, InflowOverAnAreaBringsItsVolumeAndItsDensity) {
+TEST_F(Structures, inflow_over_an_area_brings_its_volume_and_its_density) {
     const std::string source = fmt::format(
         "[[inflow]]\nname = \"scarp\"\npolygon_m = [[{0}, {2}], [{1}, {2}], [{1}, {3}], [{0}, {3}]]\nhydrograph = "
         "\"rain.csv\"\n",
@@ -319,7 +319,7 @@ TEST_F(Structures, InflowOverAnAreaBringsItsVolumeAndItsDensity) {
               mixed.observation.maps.peak_pressure.values.size());
 }
 
-TEST_F(Structures, BadInflowAreasAreRefused) {
+TEST_F(Structures, bad_inflow_areas_are_refused) {
     write("rain.csv", "time_s,discharge_m3ps,velocity_mps\n0,10,0\n2,10,0\n");
     const auto refusal = [&](const std::string& keys) {
         write_valley("[[inflow]]\nhydrograph = \"rain.csv\"\n" + keys);
@@ -352,7 +352,7 @@ TEST_F(Structures, BadInflowAreasAreRefused) {
     }
 }
 
-TEST_F(Structures, BadHydrographsAreRefusedByLine) {
+TEST_F(Structures, bad_hydrographs_are_refused_by_line) {
     const auto refusal = [&](const std::string& text) {
         write("surge.csv", text);
         write_valley(inflow());

@@ -27,7 +27,7 @@ class SuspectGround : public SceneFolder {
     }
 };
 
-TEST_F(SuspectGround, AnUndeclared0IsRefusedWithTheCommandThatDeclaresIt) {
+TEST_F(SuspectGround, an_undeclared_0_is_refused_with_the_command_that_declares_it) {
     const auto notes = told([](double x, double y) { return x < west + 200 ? 700 + valley(x, y) : 0; });
     EXPECT_THAT(notes, Contains(AllOf(HasSubstr("refused: "), HasSubstr("terrain.file"),
                                       HasSubstr("cells hold exactly 0 m"), HasSubstr("it marks missing data"),
@@ -35,18 +35,18 @@ TEST_F(SuspectGround, AnUndeclared0IsRefusedWithTheCommandThatDeclaresIt) {
                                       HasSubstr("--calc='where(A==0,-9999,A)'"))));
 }
 
-TEST_F(SuspectGround, ALowCliffTo0IsAskedAbout) {
+TEST_F(SuspectGround, a_low_cliff_to_0_is_asked_about) {
     const auto notes = told([](double x, double y) { return x < west + 200 ? valley(x, y) - 50 : 0; });
     EXPECT_THAT(notes, Contains(AllOf(HasSubstr("terrain: "), HasSubstr("is that so? If it marks missing data"))));
     EXPECT_THAT(notes, Not(Contains(HasSubstr("refused"))));
 }
 
-TEST_F(SuspectGround, ACoastIsNot) {
+TEST_F(SuspectGround, a_coast_is_not) {
     const auto notes = told([](double x, double y) { return std::max(0.0, valley(x, y) - 130); });
     EXPECT_THAT(notes, Not(Contains(HasSubstr("missing data"))));
 }
 
-TEST_F(SuspectGround, What0BehindAHillHoldsDoesNotMatter) {
+TEST_F(SuspectGround, what_0_behind_a_hill_holds_does_not_matter) {
     // The release drains to the east; 0 lies behind a crest of 600 m in the west.
     const auto ground = [](double x, double y) {
         if (y > south + 150) return y > south + 180 ? 0.0 : 900.0;
@@ -55,7 +55,7 @@ TEST_F(SuspectGround, What0BehindAHillHoldsDoesNotMatter) {
     EXPECT_THAT(told(ground), Not(Contains(HasSubstr("missing data"))));
 }
 
-TEST_F(SuspectGround, MeansOfGroundAndNodataAreRefused) {
+TEST_F(SuspectGround, means_of_ground_and_nodata_are_refused) {
     const auto ground = [](double x, double y) {
         if (x > west + 200) return nan;
         if (x > west + 190) return 0.5 * (700 + valley(x, y)) - 0.5 * 9999;
@@ -74,7 +74,7 @@ TEST_F(SuspectGround, MeansOfGroundAndNodataAreRefused) {
                 Not(Contains(HasSubstr("beside nodata"))));
 }
 
-TEST_F(SuspectGround, SteepGroundFarFromTheDebrisIsNoQuestionOfFeet) {
+TEST_F(SuspectGround, steep_ground_far_from_the_debris_is_no_question_of_feet) {
     // Walls of 70 degrees above a release at 27 degrees.
     const auto notes = told([](double x, double y) {
         const double across = std::abs(y - (south + rows * cell / 2));
@@ -83,7 +83,7 @@ TEST_F(SuspectGround, SteepGroundFarFromTheDebrisIsNoQuestionOfFeet) {
     EXPECT_THAT(notes, Not(Contains(HasSubstr("in feet"))));
 }
 
-TEST_F(SuspectGround, EightBitsAreRarelyElevations) {
+TEST_F(SuspectGround, eight_bits_are_rarely_elevations) {
     EXPECT_THAT(told(valley), Not(Contains(HasSubstr("8-bit"))));
     GDALAllRegister();
     {

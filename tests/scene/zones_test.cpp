@@ -30,12 +30,12 @@ class Zones : public SceneFolder {
     }
 };
 
-TEST_F(Zones, ASceneWithoutAnyHasNoCover) {
+TEST_F(Zones, a_scene_without_any_has_no_cover) {
     write_valley();
     EXPECT_TRUE(load_scene(folder / "scene.toml")->cover.empty());
 }
 
-TEST_F(Zones, APolygonHoldsOnTheCellsWhoseCentresItCovers) {
+TEST_F(Zones, a_polygon_holds_on_the_cells_whose_centres_it_covers) {
     const Scene scene = loaded(
         "[[zone]]\nname = \"fan\"\npolygon = \"824100 825050, 824150 825050, 824150 825100, 824100 825100\"\n"
         "friction_coefficient = 0.7\nturbulent_friction_mps2 = 250\n");
@@ -48,7 +48,7 @@ TEST_F(Zones, APolygonHoldsOnTheCellsWhoseCentresItCovers) {
     }
 }
 
-TEST_F(Zones, ALaminarViscosityIsThatOfTheGround) {
+TEST_F(Zones, a_laminar_viscosity_is_that_of_the_ground) {
     const Scene scene = loaded(
         "[[zone]]\npolygon = \"824100 825050, 824150 825050, 824150 825100, 824100 825100\"\n"
         "laminar_viscosity_m2ps = 0.07\n");
@@ -60,7 +60,7 @@ TEST_F(Zones, ALaminarViscosityIsThatOfTheGround) {
     EXPECT_TRUE(std::isnan(viscosity(160, 70)));
 }
 
-TEST_F(Zones, ViscosityIsGivenOnceOnly) {
+TEST_F(Zones, viscosity_is_given_once_only) {
     EXPECT_THAT(refusal("[material]\nlaminar_viscosity_m2ps = 0.04\nlaminar_viscosity_Pas = 80\n"),
                 HasSubstr("leave one of them out"));
     EXPECT_THAT(refusal("[material]\nlaminar_viscosity_m2ps = 0.04\nviscosity_on_ground = true\n"),
@@ -70,7 +70,7 @@ TEST_F(Zones, ViscosityIsGivenOnceOnly) {
                 HasSubstr("zone[0].laminar_viscosity_m2ps = 0.04 is refused"));
 }
 
-TEST_F(Zones, SamosatHasNoOtherDragBesideIt) {
+TEST_F(Zones, samosat_has_no_other_drag_beside_it) {
     const std::string snow = "[material]\nsamosat = true\n", zone =
                                                                  "[[zone]]\npolygon = \"824100 825050, 824150 825050, "
                                                                  "824150 825100\"\n";
@@ -92,7 +92,7 @@ TEST_F(Zones, SamosatHasNoOtherDragBesideIt) {
     EXPECT_THAT(refusal(snow + "samosat_karman = 0\n"), HasSubstr("0.01 to 10"));
 }
 
-TEST_F(Zones, LaterOnesGoBeforeEarlierOnesWhereTheySaySomething) {
+TEST_F(Zones, later_ones_go_before_earlier_ones_where_they_say_something) {
     write_features("forest.geojson", {rectangle(100, 50, 200, 150)});
     const Scene scene = loaded(
         "[[zone]]\nfile = \"forest.geojson\"\nfriction_coefficient = 0.5\nstem_density_pm2 = 0.08\n"
@@ -105,7 +105,7 @@ TEST_F(Zones, LaterOnesGoBeforeEarlierOnesWhereTheySaySomething) {
     EXPECT_EQ(at(scene, 250, 100).w, 0);
 }
 
-TEST_F(Zones, ARasterHoldsNumbersOfZonesOrTheCoefficientItself) {
+TEST_F(Zones, a_raster_holds_numbers_of_zones_or_the_coefficient_itself) {
     write_terrain("cover.tif", [](double x, double) { return x < west + 150 ? 3.0 : 8.0; });
     const Scene classes = loaded("[[zone]]\nraster = \"cover.tif\"\nraster_value = 3\nfriction_coefficient = 0.9\n");
     EXPECT_FLOAT_EQ(static_cast<float>(at(classes, 100, 100).x), 0.9F);
@@ -118,7 +118,7 @@ TEST_F(Zones, ARasterHoldsNumbersOfZonesOrTheCoefficientItself) {
                 AllOf(HasSubstr("zone[0].raster"), HasSubstr("holds 80"), HasSubstr("from 0 to 10")));
 }
 
-TEST_F(Zones, WhatCannotBeUsedIsRefusedWithItsPlace) {
+TEST_F(Zones, what_cannot_be_used_is_refused_with_its_place) {
     EXPECT_THAT(refusal("[[zone]]\npolygon = \"824100 825050, 824150\"\nfriction_coefficient = 1\n"),
                 AllOf(HasSubstr("scene.toml:8"), HasSubstr("zone[0].polygon"), HasSubstr("three corners")));
     EXPECT_THAT(refusal("[[zone]]\npolygon = \"0 0, 1 0, 1 1\"\nfriction_coefficient = 1\n"),
@@ -131,7 +131,7 @@ TEST_F(Zones, WhatCannotBeUsedIsRefusedWithItsPlace) {
                 HasSubstr("from 0 to 10"));
 }
 
-TEST_F(Zones, AMaterialThatFrictionByPairsCannotFollowIsRefused) {
+TEST_F(Zones, a_material_that_friction_by_pairs_cannot_follow_is_refused) {
     const std::string pair = "[solver]\ninternal_friction = \"pair\"\n";
     for (const std::string key :
          {"cohesion_Pa = 10", "pore_pressure_ratio = 0.5", "inertial_friction_coefficient = 1"}) {

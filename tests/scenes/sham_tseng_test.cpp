@@ -41,13 +41,13 @@ class Reconstruction : public testing::Test {
     terrain::FlowPath path;
 };
 
-TEST_F(Reconstruction, IsInHongKongGridAndHasNoGaps) {
+TEST_F(Reconstruction, is_in_hong_kong_grid_and_has_no_gaps) {
     EXPECT_EQ(crs.epsg, 2326);
     EXPECT_EQ(terrain.cell(), 1.0);
     for (const float elevation : terrain.elevation().values) ASSERT_FALSE(std::isnan(elevation));
 }
 
-TEST_F(Reconstruction, BedHasThePublishedElevations) {
+TEST_F(Reconstruction, bed_has_the_published_elevations) {
     constexpr double chainage_and_elevation[][2] = {{0, 153},   {22, 146}, {45, 132}, {67, 119}, {88, 112}, {98, 112},
                                                     {130, 102}, {162, 88}, {193, 62}, {225, 44}, {258, 29}, {290, 18}};
     double before_chainage = 0, before_elevation = 153;
@@ -64,7 +64,7 @@ TEST_F(Reconstruction, BedHasThePublishedElevations) {
     }
 }
 
-TEST_F(Reconstruction, GullyPassesThePublishedPlanPositions) {
+TEST_F(Reconstruction, gully_passes_the_published_plan_positions) {
     struct Place {
         PlanPoint point;
         double elevation;
@@ -84,7 +84,7 @@ TEST_F(Reconstruction, GullyPassesThePublishedPlanPositions) {
     EXPECT_NEAR(bend->chainage, 98, 3);
 }
 
-TEST_F(Reconstruction, WaterfallIsTenMetresHighAndNearlyVertical) {
+TEST_F(Reconstruction, waterfall_is_ten_metres_high_and_nearly_vertical) {
     // Terrain cells of 1 m spread a step of 2 m over 4 m.
     EXPECT_NEAR(bed(113) - bed(117), 10, 1);
     double steepest = 0;
@@ -95,12 +95,12 @@ TEST_F(Reconstruction, WaterfallIsTenMetresHighAndNearlyVertical) {
 }
 
 /// As debris met it: opposite bank in the bend, fall, marks at 121 m, rugged channel, marks at 217 m, House 38.
-TEST_F(Reconstruction, WaterfallLiesBetweenTheBendAndTheFirstMarks) {
+TEST_F(Reconstruction, waterfall_lies_between_the_bend_and_the_first_marks) {
     EXPECT_GT(bed(110), 110) << "still above the fall, after the bend at 98 m";
     EXPECT_LT(bed(119), 103) << "below it, before the marks at 121 m";
 }
 
-TEST_F(Reconstruction, BedIsRuggedBetweenTheMarksAndSmoothElsewhere) {
+TEST_F(Reconstruction, bed_is_rugged_between_the_marks_and_smooth_elsewhere) {
     /// Mean square of the bed's curvature, over steps of 2 m.
     const auto ruggedness = [&](double from, double to) {
         double sum = 0;
@@ -116,7 +116,7 @@ TEST_F(Reconstruction, BedIsRuggedBetweenTheMarksAndSmoothElsewhere) {
     EXPECT_LT(ruggedness(222, 280), 0.1);
 }
 
-TEST_F(Reconstruction, BedDescendsAllTheWay) {
+TEST_F(Reconstruction, bed_descends_all_the_way) {
     for (double chainage = 0; chainage + 12 < path.length(); chainage += 1) {
         const bool rugged = chainage > 107 && chainage < 218;
         const double step = rugged ? 12 : 1;
@@ -124,7 +124,7 @@ TEST_F(Reconstruction, BedDescendsAllTheWay) {
     }
 }
 
-TEST_F(Reconstruction, BankOppositeTheHillsideReachIsHighEnoughForTheImpactMarks) {
+TEST_F(Reconstruction, bank_opposite_the_hillside_reach_is_high_enough_for_the_impact_marks) {
     // Straight on down the hillside reach and across the gully, 12 m beyond where the trail turns.
     const PlanPoint before = path.point_at(75), at = path.point_at(85);
     const double ahead = 33 / std::hypot(at.x - before.x, at.y - before.y);
@@ -132,7 +132,7 @@ TEST_F(Reconstruction, BankOppositeTheHillsideReachIsHighEnoughForTheImpactMarks
     EXPECT_GT(terrain.elevation_at(bank) - bed(98), 3);
 }
 
-TEST(SceneScripts, MakeExactlyTheCommittedFiles) {
+TEST(SceneScripts, make_exactly_the_committed_files) {
     if (std::system("/usr/bin/python3 -c 'import numpy; from osgeo import gdal' >/dev/null 2>&1") != 0) {
         GTEST_SKIP() << "scene scripts not checked: /usr/bin/python3 lacks GDAL or numpy (install python3-gdal)";
     }
@@ -182,14 +182,14 @@ void expect_the_landslide(const scene::Scene& scene) {
     EXPECT_EQ(scene.flow_path_origin, scene::PathOrigin::file);
 }
 
-TEST(Scenes, ReconstructionLoads) {
+TEST(Scenes, reconstruction_loads) {
     const auto scene = scene::load_scene(scenes / "sham_tseng/scene.toml");
     ASSERT_TRUE(scene.ok()) << scene.error().message;
     expect_the_landslide(*scene);
 }
 
 /// One set of values for both grounds, and the published one under its name.
-TEST(Scenes, BothHaveTheSameMaterial) {
+TEST(Scenes, both_have_the_same_material) {
     const std::filesystem::path files[] = {scenes / "sham_tseng/scene.toml", scenes / "sham_tseng_real/scene.toml"};
     const bool given = std::getenv("TALUS_DATA") != nullptr;
     if (!given) setenv("TALUS_DATA", "/nowhere", 1);  // the terrain is not read
@@ -210,7 +210,7 @@ TEST(Scenes, BothHaveTheSameMaterial) {
     if (!given) unsetenv("TALUS_DATA");
 }
 
-TEST(Scenes, OfficialTerrainLoads) {
+TEST(Scenes, official_terrain_loads) {
     const char* folder = std::getenv("TALUS_DATA");
     if (folder == nullptr || *folder == 0) {
         GTEST_SKIP() << "sham_tseng_real not checked: TALUS_DATA does not say where hk_sham_tseng/ lies";
@@ -226,7 +226,7 @@ TEST(Scenes, OfficialTerrainLoads) {
     }
 }
 
-TEST(Scenes, WithoutTheOfficialTerrainItSaysWhereToGetIt) {
+TEST(Scenes, without_the_official_terrain_it_says_where_to_get_it) {
     const char* folder = std::getenv("TALUS_DATA");
     const std::string before = folder != nullptr ? folder : "";
     unsetenv("TALUS_DATA");

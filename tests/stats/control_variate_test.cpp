@@ -49,7 +49,7 @@ Trial trial_of(double related) {
     return t;
 }
 
-TEST(ControlledMean, IsCloserWhereTheFastModelIsRelatedAndSaysByHowMuch) {
+TEST(ControlledMean, is_closer_where_the_fast_model_is_related_and_says_by_how_much) {
     const Trial t = trial_of(0.95);
     EXPECT_NEAR(t.bias, 0, 0.02);
     EXPECT_LT(t.spread, 0.5 * t.plain_spread);
@@ -57,14 +57,14 @@ TEST(ControlledMean, IsCloserWhereTheFastModelIsRelatedAndSaysByHowMuch) {
     EXPECT_GT(t.within, 0.92);
 }
 
-TEST(ControlledMean, DoesLittleHarmWhereTheFastModelTellsNothing) {
+TEST(ControlledMean, does_little_harm_where_the_fast_model_tells_nothing) {
     const Trial t = trial_of(0);
     EXPECT_NEAR(t.bias, 0, 0.03);
     EXPECT_LT(t.spread, 1.05 * t.plain_spread);
     EXPECT_GT(t.within, 0.9);
 }
 
-TEST(ControlledMean, IsThePlainOneWithTooFewPairsOrNothingMore) {
+TEST(ControlledMean, is_the_plain_one_with_too_few_pairs_or_nothing_more) {
     const Sample s = sample_of(1, 20, 0, 0.95);
     const ControlledMean alone = controlled_mean(s.slow, s.fast, s.more);
     EXPECT_EQ(alone.mean, alone.plain);

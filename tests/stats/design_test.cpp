@@ -9,7 +9,7 @@
 namespace talus::stats {
 namespace {
 
-TEST(Design, PointsHangOnTheSeedAndTheRunAlone) {
+TEST(Design, points_hang_on_the_seed_and_the_run_alone) {
     for (const DesignKind kind : {DesignKind::monte_carlo, DesignKind::sobol}) {
         const Points few = sample_points(kind, 10, 3, 7), many = sample_points(kind, 100, 3, 7);
         EXPECT_TRUE(std::equal(few.begin(), few.end(), many.begin()));  // more runs leave the first ones alone
@@ -19,7 +19,7 @@ TEST(Design, PointsHangOnTheSeedAndTheRunAlone) {
               sample_points(DesignKind::latin_hypercube, 10, 3, 7));
 }
 
-TEST(Design, MonteCarloIsUniform) {
+TEST(Design, monte_carlo_is_uniform) {
     const Points points = sample_points(DesignKind::monte_carlo, 20000, 2, 1);
     double mean = 0, square = 0, product = 0;
     for (const auto& p : points) {
@@ -33,7 +33,7 @@ TEST(Design, MonteCarloIsUniform) {
     EXPECT_NEAR(product, 0.25, 0.01);
 }
 
-TEST(Design, ALatinHypercubeTakesEveryShareOnce) {
+TEST(Design, a_latin_hypercube_takes_every_share_once) {
     const Points points = sample_points(DesignKind::latin_hypercube, 50, 4, 3);
     for (std::size_t k = 0; k < 4; ++k) {
         std::set<int> shares;
@@ -42,7 +42,7 @@ TEST(Design, ALatinHypercubeTakesEveryShareOnce) {
     }
 }
 
-TEST(Design, ASobolSequenceFillsEveryBinaryShareEvenlyInEveryDimension) {
+TEST(Design, a_sobol_sequence_fills_every_binary_share_evenly_in_every_dimension) {
     const Points points = sample_points(DesignKind::sobol, 256, sobol_dimensions, 5);
     for (std::size_t k = 0; k < sobol_dimensions; ++k) {
         std::vector<int> counts(256, 0);
@@ -51,7 +51,7 @@ TEST(Design, ASobolSequenceFillsEveryBinaryShareEvenlyInEveryDimension) {
     }
 }
 
-TEST(Design, ASobolSequenceFillsSquaresEvenlyInItsFirstTwoDimensions) {
+TEST(Design, a_sobol_sequence_fills_squares_evenly_in_its_first_two_dimensions) {
     std::vector<int> counts(256, 0);
     for (const auto& p : sample_points(DesignKind::sobol, 256, 2, 9)) {
         ++counts[static_cast<std::size_t>(p[0] * 16) * 16 + static_cast<std::size_t>(p[1] * 16)];
@@ -59,7 +59,7 @@ TEST(Design, ASobolSequenceFillsSquaresEvenlyInItsFirstTwoDimensions) {
     EXPECT_EQ(std::count(counts.begin(), counts.end(), 1), 256);
 }
 
-TEST(Design, ASobolSequenceIntegratesBetterThanChance) {
+TEST(Design, a_sobol_sequence_integrates_better_than_chance) {
     const auto error_of = [](DesignKind kind) {
         double sum = 0;
         for (const auto& p : sample_points(kind, 1024, 6, 2)) {
@@ -73,7 +73,7 @@ TEST(Design, ASobolSequenceIntegratesBetterThanChance) {
     EXPECT_LT(error_of(DesignKind::sobol), error_of(DesignKind::monte_carlo));
 }
 
-TEST(Design, AGridHasEveryCombinationOnce) {
+TEST(Design, a_grid_has_every_combination_once) {
     const Points points = grid_points({2, 3});
     ASSERT_EQ(points.size(), 6u);
     EXPECT_EQ(points[0], (std::vector<double>{0.25, 0.5 / 3}));
@@ -81,7 +81,7 @@ TEST(Design, AGridHasEveryCombinationOnce) {
     EXPECT_EQ(std::set<std::vector<double>>(points.begin(), points.end()).size(), 6u);
 }
 
-TEST(Design, ASaltelliBlockMixesOneFactorAtATime) {
+TEST(Design, a_saltelli_block_mixes_one_factor_at_a_time) {
     const Points points = saltelli_points(5, 3, 1);
     ASSERT_EQ(points.size(), 25u);
     for (std::size_t block = 0; block < 25; block += 5) {
@@ -92,7 +92,7 @@ TEST(Design, ASaltelliBlockMixesOneFactorAtATime) {
     }
 }
 
-TEST(Design, AMorrisTrajectoryChangesEveryFactorOnceByHalfTheRange) {
+TEST(Design, a_morris_trajectory_changes_every_factor_once_by_half_the_range) {
     const Points points = morris_points(20, 4, 1);
     ASSERT_EQ(points.size(), 100u);
     for (std::size_t first = 0; first < 100; first += 5) {

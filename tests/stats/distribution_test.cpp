@@ -16,7 +16,7 @@ Distribution parsed(const std::string& text) {
     return d ? *d : Distribution{};
 }
 
-TEST(Distribution, QuantilesAreThoseOfItsKind) {
+TEST(Distribution, quantiles_are_those_of_its_kind) {
     EXPECT_DOUBLE_EQ(parsed("0.2:0.6").quantile(0.25), 0.3);
     EXPECT_NEAR(parsed("log:0.01:100").quantile(0.5), 1, 1e-12);
     const Distribution normal = parsed("normal:10:2");
@@ -28,7 +28,7 @@ TEST(Distribution, QuantilesAreThoseOfItsKind) {
     EXPECT_NEAR(triangular.quantile(1), 4, 1e-12);
 }
 
-TEST(Distribution, ACutNormalStaysWithinItsLimitsAndKeepsItsShape) {
+TEST(Distribution, a_cut_normal_stays_within_its_limits_and_keeps_its_shape) {
     const Distribution d = parsed("normal:0:1:-1:1");
     EXPECT_DOUBLE_EQ(d.quantile(0), -1);
     EXPECT_DOUBLE_EQ(d.quantile(1), 1);
@@ -37,7 +37,7 @@ TEST(Distribution, ACutNormalStaysWithinItsLimitsAndKeepsItsShape) {
     EXPECT_NEAR(std::erf(d.quantile(0.75) / std::sqrt(2.0)) / 2, 0.6826894921 / 4, 1e-9);
 }
 
-TEST(Distribution, AListGivesItsEntriesEquallyOften) {
+TEST(Distribution, a_list_gives_its_entries_equally_often) {
     const Distribution d = parsed("a,b,c");
     int count[3] = {};
     for (int i = 0; i < 300; ++i) ++count[d.entry((i + 0.5) / 300)[0] - 'a'];
@@ -45,7 +45,7 @@ TEST(Distribution, AListGivesItsEntriesEquallyOften) {
     EXPECT_EQ(d.entry(1), "c");
 }
 
-TEST(Distribution, AListGivesItsEntriesByTheirWeights) {
+TEST(Distribution, a_list_gives_its_entries_by_their_weights) {
     const Distribution d = parsed("a@1,b@6,c@3");
     int count[3] = {};
     for (int i = 0; i < 300; ++i) ++count[d.entry((i + 0.5) / 300)[0] - 'a'];
@@ -57,14 +57,14 @@ TEST(Distribution, AListGivesItsEntriesByTheirWeights) {
     EXPECT_EQ(parsed("a@x,b@2").entries[0], "a@x") << "a text that has the sign";
 }
 
-TEST(Distribution, WhatIsWrittenReadsBackTheSame) {
+TEST(Distribution, what_is_written_reads_back_the_same) {
     for (const char* text : {"0.1:0.3", "log:0.001:7", "normal:0.4:0.05", "normal:0.4:0.05:0.2:0.6", "triangular:1:2:3",
                              "spiky,cubic_spline", "400@3,900@0.5"}) {
         EXPECT_EQ(parsed(text).written(), text);
     }
 }
 
-TEST(Distribution, BadOnesAreRefusedWithTheReason) {
+TEST(Distribution, bad_ones_are_refused_with_the_reason) {
     const auto why = [](const std::string& text) {
         const auto d = parse_distribution(text);
         return d ? std::string("(accepted)") : d.error().message;

@@ -30,7 +30,7 @@ std::vector<double> values_of(const Points& points, double noise) {
     return values;
 }
 
-TEST(Cholesky, SolvesASystem) {
+TEST(Cholesky, solves_a_system) {
     std::vector<double> a = {4, 2, 0.6, 2, 5, 1, 0.6, 1, 3};  // A (1, -2, 3) is the right-hand side
     std::vector<double> b = {4 - 4 + 1.8, 2 - 10 + 3, 0.6 - 2 + 9};
     ASSERT_TRUE(cholesky(a, 3));
@@ -43,7 +43,7 @@ TEST(Cholesky, SolvesASystem) {
     EXPECT_FALSE(cholesky(indefinite, 2));
 }
 
-TEST(Optimise, FindsTheLowestOfSeveralValleys) {
+TEST(Optimise, finds_the_lowest_of_several_valleys) {
     const Objective waves = [](const std::vector<double>& p) {
         return std::cos(18 * p[0]) + 4 * (p[0] - 0.55) * (p[0] - 0.55) + (p[1] - 0.3) * (p[1] - 0.3);
     };
@@ -54,7 +54,7 @@ TEST(Optimise, FindsTheLowestOfSeveralValleys) {
     EXPECT_NEAR(single.at[0], 0, 1e-3);
 }
 
-TEST(Optimise, StaysInItsLimitsAndKeepsTheBest) {
+TEST(Optimise, stays_in_its_limits_and_keeps_the_best) {
     const Optimum best = minimise(
         [](const std::vector<double>& p) {
             EXPECT_TRUE(p[0] >= 1 && p[0] <= 2);
@@ -65,7 +65,7 @@ TEST(Optimise, StaysInItsLimitsAndKeepsTheBest) {
     EXPECT_LE(best.at[0], 1.9);
 }
 
-TEST(Emulator, KnowsASmoothFunctionBetweenItsRuns) {
+TEST(Emulator, knows_a_smooth_function_between_its_runs) {
     const Points points = some_points(30);
     const Emulator emulator = Emulator::fit(points, values_of(points, 0));
     double square = 0;
@@ -82,7 +82,7 @@ TEST(Emulator, KnowsASmoothFunctionBetweenItsRuns) {
     EXPECT_LT(emulator.noise_deviation(), 0.1);
 }
 
-TEST(Emulator, TellsNoiseFromTheFunction) {
+TEST(Emulator, tells_noise_from_the_function) {
     const Points points = some_points(60);
     const Emulator emulator = Emulator::fit(points, values_of(points, 1.0));
     EXPECT_GT(emulator.noise_deviation(), 0.7);
@@ -90,13 +90,13 @@ TEST(Emulator, TellsNoiseFromTheFunction) {
     EXPECT_LT(emulator.at({0.5, 0.5}).variance, 0.5);  // of the mean: many runs know it better than one
 }
 
-TEST(Emulator, FindsThatAFactorDoesNotMatter) {
+TEST(Emulator, finds_that_a_factor_does_not_matter) {
     const Points points = some_points(30, 3);
     const Emulator emulator = Emulator::fit(points, values_of(points, 0));
     EXPECT_GT(emulator.lengths()[2], 3 * emulator.lengths()[0]);
 }
 
-TEST(Emulator, LeavesOneOutAsIfItHadNotBeenRun) {
+TEST(Emulator, leaves_one_out_as_if_it_had_not_been_run) {
     Points points = some_points(20);
     std::vector<double> values = values_of(points, 0.3);
     const std::vector<double> last = points.back();
@@ -111,7 +111,7 @@ TEST(Emulator, LeavesOneOutAsIfItHadNotBeenRun) {
     EXPECT_NEAR(left_out.deviation, std::sqrt(expected.variance + expected.noise), 1e-6);
 }
 
-TEST(Emulator, TakesValuesThatAreAllTheSame) {
+TEST(Emulator, takes_values_that_are_all_the_same) {
     const Points points = some_points(12);
     const Emulator emulator = Emulator::fit(points, std::vector<double>(12, 7.0));
     EXPECT_NEAR(emulator.mean_at({0.5, 0.5}), 7, 1e-6);
@@ -165,7 +165,7 @@ Errors errors_of(const Emulator& emulator, Function function, const Points& plac
     return errors;
 }
 
-TEST(TwoModels, FourSlowRunsBesideElevenFastOnesTellForrestersFunction) {
+TEST(TwoModels, four_slow_runs_beside_eleven_fast_ones_tell_forresters_function) {
     const Points slow = {{0}, {0.4}, {0.6}, {1}};  // those of the paper
     const Emulator both = Emulator::fit_beside(fast_emulator(fast_forrester, line(11)), slow, all_of(forrester, slow));
     EXPECT_GT(both.rho(), 1);
@@ -186,7 +186,7 @@ double slow_wave(const std::vector<double>& p) {
     return 0.8 * wave(p) + 3 * p[0] - 2 * p[0] * p[1];
 }
 
-TEST(TwoModels, TheIntervalsHoldTheSlowModelAsOftenAsTheySay) {
+TEST(TwoModels, the_intervals_hold_the_slow_model_as_often_as_they_say) {
     const Points places = sample_points(DesignKind::monte_carlo, 100, 2, 5);
     double within = 0, rms = 0, alone = 0;
     constexpr int designs = 10;
@@ -208,7 +208,7 @@ double unrelated(const std::vector<double>& p) {
     return 5 * std::cos(9 * p[1]) + 4 * std::sin(7 * p[0] + 1);
 }
 
-TEST(TwoModels, AFastModelThatTellsNothingDoesLittleHarm) {
+TEST(TwoModels, a_fast_model_that_tells_nothing_does_little_harm) {
     const Points places = sample_points(DesignKind::monte_carlo, 100, 2, 5);
     double rms = 0, alone = 0, within = 0;
     constexpr int designs = 6;
@@ -227,13 +227,13 @@ TEST(TwoModels, AFastModelThatTellsNothingDoesLittleHarm) {
     EXPECT_GE(within, 0.9);
 }
 
-TEST(TwoModels, TheRunsNeedNotBeAtTheSamePlaces) {
+TEST(TwoModels, the_runs_need_not_be_at_the_same_places) {
     const Points slow = sample_points(DesignKind::latin_hypercube, 8, 2, 17);
     const Emulator both = Emulator::fit_beside(fast_emulator(wave, some_points(40)), slow, all_of(slow_wave, slow));
     EXPECT_LT(errors_of(both, slow_wave, some_points(50)).rms, 0.5);
 }
 
-TEST(TwoModels, WithoutASlowRunItIsTheFastModelAndAsDoubtfulAsModelsUsuallyAre) {
+TEST(TwoModels, without_a_slow_run_it_is_the_fast_model_and_as_doubtful_as_models_usually_are) {
     const auto fast = fast_emulator(wave, some_points(40));
     const Emulator both = Emulator::fit_beside(fast, {}, {});
     const Emulator::Estimate e = both.at({0.3, 0.6});
@@ -243,7 +243,7 @@ TEST(TwoModels, WithoutASlowRunItIsTheFastModelAndAsDoubtfulAsModelsUsuallyAre) 
     EXPECT_NEAR(both.with({0.3, 0.6}, 20).mean_at({0.3, 0.6}), 20, 0.2);
 }
 
-TEST(TwoModels, LeavesASlowRunOutAsIfItHadNotBeenRun) {
+TEST(TwoModels, leaves_a_slow_run_out_as_if_it_had_not_been_run) {
     const auto fast = fast_emulator(wave, some_points(40));
     Points slow = sample_points(DesignKind::latin_hypercube, 9, 2, 17);
     std::vector<double> values = all_of(slow_wave, slow);

@@ -24,7 +24,7 @@ std::vector<std::vector<double>> traces_of(const Chains& made, std::size_t facto
     return traces;
 }
 
-TEST(Sampler, DrawsFromACorrelatedGaussian) {
+TEST(Sampler, draws_from_a_correlated_gaussian) {
     const Points starts = {{0.2, 0.4}, {0.6, 0.7}, {0.5, 0.4}, {0.3, 0.8}};
     const Chains made = sample_density(gauss, starts, {1000, 8000, 1});
     double n = 0, x = 0, y = 0, xx = 0, yy = 0, xy = 0;
@@ -56,7 +56,7 @@ TEST(Sampler, DrawsFromACorrelatedGaussian) {
     EXPECT_LT(effective_size(traces_of(made, 0)), 12000);  // of 32000 that depend on each other
 }
 
-TEST(Sampler, StaysInTheCubeAndFillsItEvenly) {
+TEST(Sampler, stays_in_the_cube_and_fills_it_evenly) {
     const LogDensity flat = [](const std::vector<double>&) { return 0.0; };
     const Chains made = sample_density(flat, {{0.1}, {0.9}}, {1000, 20000, 2});
     std::vector<double> tenths(10, 0);
@@ -69,13 +69,13 @@ TEST(Sampler, StaysInTheCubeAndFillsItEvenly) {
     for (const double share : tenths) EXPECT_NEAR(share, 1, 0.12);
 }
 
-TEST(Sampler, IsTheSameForTheSameSeed) {
+TEST(Sampler, is_the_same_for_the_same_seed) {
     const Points starts = {{0.2, 0.4}, {0.6, 0.7}};
     EXPECT_EQ(sample_density(gauss, starts, {100, 100, 1}).chains, sample_density(gauss, starts, {100, 100, 1}).chains);
     EXPECT_NE(sample_density(gauss, starts, {100, 100, 1}).chains, sample_density(gauss, starts, {100, 100, 2}).chains);
 }
 
-TEST(Sampler, StartsAreWhereTheDensityIs) {
+TEST(Sampler, starts_are_where_the_density_is) {
     const Points starts = spread_starts(gauss, sample_points(DesignKind::latin_hypercube, 400, 2, 1), 4, 1);
     ASSERT_EQ(starts.size(), 4u);
     for (const auto& start : starts) {
@@ -94,7 +94,7 @@ std::vector<double> autoregressive(std::uint64_t seed, double rho, double mean) 
     return chain;
 }
 
-TEST(Convergence, CountsIndependentDraws) {
+TEST(Convergence, counts_independent_draws) {
     for (const double rho : {0.0, 0.5, 0.9}) {
         const double expected = 32000 * (1 - rho) / (1 + rho);
         const double found = effective_size({autoregressive(1, rho, 0), autoregressive(2, rho, 0),
@@ -103,7 +103,7 @@ TEST(Convergence, CountsIndependentDraws) {
     }
 }
 
-TEST(Convergence, SeesChainsThatDisagree) {
+TEST(Convergence, sees_chains_that_disagree) {
     EXPECT_LT(split_r_hat({autoregressive(1, 0.5, 0), autoregressive(2, 0.5, 0)}), 1.01);
     EXPECT_GT(split_r_hat({autoregressive(1, 0.5, 0), autoregressive(2, 0.5, 2)}), 1.2);
     std::vector<double> drifts = autoregressive(1, 0.5, 0);

@@ -20,7 +20,7 @@ std::vector<double> values_at(const Points& points, double (*f)(const std::vecto
     return values;
 }
 
-TEST(Sensitivity, SobolIndicesOfIshigamisFunctionAreThePublishedOnes) {
+TEST(Sensitivity, sobol_indices_of_ishigamis_function_are_the_published_ones) {
     const Points points = saltelli_points(2048, 3, 1);
     const Sensitivity s = sensitivity_of(DesignKind::saltelli, points, values_at(points, ishigami));
     ASSERT_EQ(s.kind, SensitivityKind::variance);
@@ -34,7 +34,7 @@ TEST(Sensitivity, SobolIndicesOfIshigamisFunctionAreThePublishedOnes) {
     }
 }
 
-TEST(Sensitivity, BlocksWithAFailedRunAreLeftOut) {
+TEST(Sensitivity, blocks_with_a_failed_run_are_left_out) {
     const Points points = saltelli_points(256, 3, 1);
     std::vector<double> values = values_at(points, ishigami);
     values[7] = std::nan("");
@@ -45,7 +45,7 @@ TEST(Sensitivity, BlocksWithAFailedRunAreLeftOut) {
     EXPECT_NEAR(s.effects[1].first.value, 0.4424, 0.08);
 }
 
-TEST(Sensitivity, ElementaryEffectsOfALinearResultAreItsSlopes) {
+TEST(Sensitivity, elementary_effects_of_a_linear_result_are_its_slopes) {
     const Points points = morris_points(8, 3, 4);
     const auto f = [](const std::vector<double>& u) { return 3 * u[0] - 2 * u[1]; };
     const Sensitivity s = sensitivity_of(DesignKind::morris, points, values_at(points, f));
@@ -57,7 +57,7 @@ TEST(Sensitivity, ElementaryEffectsOfALinearResultAreItsSlopes) {
     for (const FactorEffect& e : s.effects) EXPECT_NEAR(e.deviation, 0, 1e-12);
 }
 
-TEST(Sensitivity, RankCorrelationSeesOnlyTheOrder) {
+TEST(Sensitivity, rank_correlation_sees_only_the_order) {
     const Points points = sample_points(DesignKind::latin_hypercube, 40, 2, 1);
     const auto f = [](const std::vector<double>& u) { return -std::exp(9 * u[0]); };
     const Sensitivity s = sensitivity_of(DesignKind::latin_hypercube, points, values_at(points, f));
@@ -66,7 +66,7 @@ TEST(Sensitivity, RankCorrelationSeesOnlyTheOrder) {
     EXPECT_LT(std::abs(s.effects[1].correlation), 0.4);
 }
 
-TEST(Sensitivity, AResultThatNeverChangesHasNone) {
+TEST(Sensitivity, a_result_that_never_changes_has_none) {
     const Points points = sample_points(DesignKind::monte_carlo, 40, 2, 1);
     EXPECT_TRUE(sensitivity_of(DesignKind::monte_carlo, points, std::vector<double>(40, 3.0)).effects.empty());
 }

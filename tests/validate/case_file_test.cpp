@@ -12,7 +12,7 @@ namespace {
 
 using testing::HasSubstr;
 
-TEST(CaseFile, IsReadWithAllItSays) {
+TEST(CaseFile, is_read_with_all_it_says) {
     const CaseFolder folder(small_case);
     const Result<Case> loaded = folder.load();
     ASSERT_TRUE(loaded) << loaded.error().message;
@@ -34,7 +34,7 @@ struct Refused {
 
 class RefusedCase : public testing::TestWithParam<Refused> {};
 
-TEST_P(RefusedCase, SaysWhereWhatAndWhatIsAllowed) {
+TEST_P(RefusedCase, says_where_what_and_what_is_allowed) {
     const std::string text = changed_case(GetParam().from, GetParam().to);
     ASSERT_FALSE(text.empty()) << "the test replaces nothing";
     const CaseFolder folder(text);
@@ -79,20 +79,20 @@ INSTANTIATE_TEST_SUITE_P(
         Refused{"[[expect]]", "[expect]", {"expect must be sections", "[[expect]]"}},
         Refused{"layers = 2", "layers = ", {":11:", "not valid TOML"}}));
 
-TEST(CaseFile, ThatIsNotThereIsNamed) {
+TEST(CaseFile, that_is_not_there_is_named) {
     const Result<Case> loaded = load_case("/no/such/folder");
     ASSERT_FALSE(loaded);
     EXPECT_THAT(loaded.error().message, HasSubstr("/no/such/folder/case.toml: no such case file"));
 }
 
-TEST(CaseFile, WithoutExpectationsIsRefused) {
+TEST(CaseFile, without_expectations_is_refused) {
     const std::string text = small_case.substr(0, small_case.find("[[expect]]"));
     const Result<Case> loaded = CaseFolder(text).load();
     ASSERT_FALSE(loaded);
     EXPECT_THAT(loaded.error().message, HasSubstr("\"expect\" is missing"));
 }
 
-TEST(CaseFile, MaySpeakOfSeveralVariantsAtOnce) {
+TEST(CaseFile, may_speak_of_several_variants_at_once) {
     const Result<Case> loaded =
         CaseFolder(changed_case("source = \"by", "where = [\"a\", \"b\"]\nsource = \"by")).load();
     ASSERT_TRUE(loaded) << loaded.error().message;
@@ -100,7 +100,7 @@ TEST(CaseFile, MaySpeakOfSeveralVariantsAtOnce) {
     EXPECT_EQ(loaded->expectations[1].where, "b");
 }
 
-TEST(CaseFile, EveryKindExplainsItselfAndItsQuantities) {
+TEST(CaseFile, every_kind_explains_itself_and_its_quantities) {
     for (const Kind& kind : kinds()) {
         EXPECT_FALSE(kind.summary.empty()) << kind.name;
         for (const Quantity& quantity : kind.quantities) {
@@ -110,7 +110,7 @@ TEST(CaseFile, EveryKindExplainsItselfAndItsQuantities) {
     }
 }
 
-TEST(CaseFile, EveryKindAndQuantityIsDocumented) {
+TEST(CaseFile, every_kind_and_quantity_is_documented) {
     const std::string text = test::read_text(std::filesystem::path(TALUS_SOURCE_DIR) / "docs/validation-cases.md");
     for (const Kind& kind : kinds()) {
         EXPECT_THAT(text, HasSubstr("| `" + std::string(kind.name) + "` | " + std::string(kind.summary) + " |"));
@@ -120,7 +120,7 @@ TEST(CaseFile, EveryKindAndQuantityIsDocumented) {
     }
 }
 
-TEST(CaseFile, AllCasesOfTheRepositoryAreGoodAndTravelInsideTheProgram) {
+TEST(CaseFile, all_cases_of_the_repository_are_good_and_travel_inside_the_program) {
     std::vector<std::string> names;
     for (const auto& entry :
          std::filesystem::directory_iterator(std::filesystem::path(TALUS_SOURCE_DIR) / "validation")) {

@@ -11,7 +11,7 @@ namespace {
 constexpr double degrees = std::numbers::pi / 180;
 constexpr double gravity = 9.80665;
 
-TEST(ColumnLaws, HaveTheValuesOfTheirPapers) {
+TEST(ColumnLaws, have_the_values_of_their_papers) {
     EXPECT_NEAR(column_run_out_axisymmetric(1), 1.24, 1e-12);
     EXPECT_NEAR(column_run_out_axisymmetric(4), 3.2, 1e-12);
     EXPECT_NEAR(column_run_out_planar(1), 1.2, 1e-12);
@@ -26,7 +26,7 @@ TEST(ColumnLaws, HaveTheValuesOfTheirPapers) {
     EXPECT_NEAR(column_height_planar(0.5), 0.5, 1e-12);
 }
 
-TEST(SheetFlow, HasTheVelocitiesOfItsLaws) {
+TEST(SheetFlow, has_the_velocities_of_its_laws) {
     const SheetFlow sheet{30 * degrees, 2, gravity};
     EXPECT_NEAR(sheet.with_drag(0.2, 500, 0), std::sqrt(1000 * (0.5 - 0.2 * 0.8660254)), 1e-6);
     EXPECT_EQ(sheet.with_drag(0.6, 500, 0), 0);
@@ -56,7 +56,7 @@ TEST(SheetFlow, HasTheVelocitiesOfItsLaws) {
     EXPECT_TRUE(std::isnan(sheet.bagnold(1, 0.2, 0.5, 0.3, 0.05, 0.6))) << "it never gets steady";
 }
 
-TEST(DamBreak, IsRittersWithoutSlopeAndFriction) {
+TEST(DamBreak, is_ritters_without_slope_and_friction) {
     const DamBreak dam(0, 0, 2, gravity);
     const double c = std::sqrt(gravity * 2);
     EXPECT_NEAR(dam.wave_speed(), c, 1e-12);
@@ -71,7 +71,7 @@ TEST(DamBreak, IsRittersWithoutSlopeAndFriction) {
     EXPECT_EQ(dam.thickness(6 * c + 1, 3), 0);
 }
 
-TEST(DamBreak, OnASlopeIsRittersSeenFromAFrameThatAccelerates) {
+TEST(DamBreak, on_a_slope_is_ritters_seen_from_a_frame_that_accelerates) {
     const DamBreak slope(22 * degrees, 21 * degrees, 1, gravity);
     const double normal = gravity * std::cos(22 * degrees);
     const double acceleration = normal * (std::tan(22 * degrees) - std::tan(21 * degrees));
@@ -82,7 +82,7 @@ TEST(DamBreak, OnASlopeIsRittersSeenFromAFrameThatAccelerates) {
     EXPECT_NEAR(slope.velocity(slope.back(5), 5), acceleration * 5, 1e-9);
 }
 
-TEST(DamBreak, ConservesVolume) {
+TEST(DamBreak, conserves_volume) {
     const DamBreak dam(22 * degrees, 21 * degrees, 1, gravity);
     const double time = 5, moved = dam.back(time) + dam.wave_speed() * time;  // of what is not disturbed
     double volume = 0;
@@ -91,7 +91,7 @@ TEST(DamBreak, ConservesVolume) {
     EXPECT_NEAR(volume, moved - dam.back(time), 1e-3);
 }
 
-TEST(SpreadingCap, StartsAsItWasAndConservesVolume) {
+TEST(SpreadingCap, starts_as_it_was_and_conserves_volume) {
     const SpreadingCap cap(35 * degrees, 25 * degrees, 80, 4, gravity, 6);
     EXPECT_NEAR(cap.thickness(0, 0, 0), 4, 1e-9);
     EXPECT_NEAR(cap.thickness(40, 0, 0), 3, 1e-9);
@@ -104,7 +104,7 @@ TEST(SpreadingCap, StartsAsItWasAndConservesVolume) {
     }
 }
 
-TEST(SpreadingCap, SlidesByTheLawOfCoulombAndSpreadsMoreAlongThanAcross) {
+TEST(SpreadingCap, slides_by_the_law_of_coulomb_and_spreads_more_along_than_across) {
     const SpreadingCap cap(35 * degrees, 25 * degrees, 80, 4, gravity, 6);
     const double acceleration = gravity * (std::sin(35 * degrees) - std::cos(35 * degrees) * std::tan(25 * degrees));
     EXPECT_NEAR(cap.travelled(5), acceleration * 12.5, 1e-9);
@@ -115,12 +115,12 @@ TEST(SpreadingCap, SlidesByTheLawOfCoulombAndSpreadsMoreAlongThanAcross) {
     EXPECT_NEAR(cap.half_length(0.2) / 80 - 1, grown * 0.04, 1e-4 * grown);
 }
 
-TEST(SpreadingCap, WithoutFrictionSpreadsAlikeInAllDirections) {
+TEST(SpreadingCap, without_friction_spreads_alike_in_all_directions) {
     const SpreadingCap cap(35 * degrees, 0, 80, 4, gravity, 6);
     EXPECT_NEAR(cap.half_length(5), cap.half_width(5), 1e-6);
 }
 
-TEST(MomentumJump, SolvesItsEquation) {
+TEST(MomentumJump, solves_its_equation) {
     EXPECT_NEAR(momentum_jump(0), 1, 1e-6);
     EXPECT_NEAR(momentum_jump(1), 2.170, 1e-3);
     for (const double froude : {0.5, 2.0, 6.0}) {

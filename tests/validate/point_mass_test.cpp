@@ -14,7 +14,7 @@ Profile plane(double slope) {
     return [slope](double x) { return ProfilePoint{-std::tan(slope) * x, -std::tan(slope), 0}; };
 }
 
-TEST(PointMass, SlidesDownAPlaneAsCoulombSays) {
+TEST(PointMass, slides_down_a_plane_as_coulomb_says) {
     const double slope = 0.5, friction = 0.3, time = 3;
     PointMass mass(plane(slope), friction, point_gravity, 0, 2);
     mass.advance_to(time);
@@ -24,7 +24,7 @@ TEST(PointMass, SlidesDownAPlaneAsCoulombSays) {
     EXPECT_EQ(mass.landing_loss(), 0);
 }
 
-TEST(PointMass, StopsWhereFrictionExceedsTheSlopeAndStays) {
+TEST(PointMass, stops_where_friction_exceeds_the_slope_and_stays) {
     PointMass mass(plane(0.2), 0.5, point_gravity, 0, 1);
     mass.advance_to(2);
     const double stopped = mass.x();
@@ -33,7 +33,7 @@ TEST(PointMass, StopsWhereFrictionExceedsTheSlopeAndStays) {
     EXPECT_EQ(mass.x(), stopped);
 }
 
-TEST(PointMass, KeepsItsEnergyOnWavesThatItFollowsWithoutFriction) {
+TEST(PointMass, keeps_its_energy_on_waves_that_it_follows_without_friction) {
     const double k = 2 * std::numbers::pi / 20;
     const Profile waves = [k](double x) {
         return ProfilePoint{0.3 * std::sin(k * x), 0.3 * k * std::cos(k * x), -0.3 * k * k * std::sin(k * x)};
@@ -44,7 +44,7 @@ TEST(PointMass, KeepsItsEnergyOnWavesThatItFollowsWithoutFriction) {
     EXPECT_NEAR(mass.speed() * mass.speed() / 2 + point_gravity * mass.elevation(), 32, 1e-4);
 }
 
-TEST(PointMass, FrictionInAHollowIncludesTheForceThatTurnsIt) {
+TEST(PointMass, friction_in_a_hollow_includes_the_force_that_turns_it) {
     // v falls by f v per radian; the weight takes f g / v per metre besides, 0.01 m/s, and the end is found to 0.1 m/s.
     constexpr double radius = 10, speed = 1000, friction = 0.1;
     const Profile circle = [](double x) {
@@ -58,7 +58,7 @@ TEST(PointMass, FrictionInAHollowIncludesTheForceThatTurnsIt) {
     EXPECT_NEAR(mass.speed(), speed * std::exp(-friction), 0.2);
 }
 
-TEST(PointMass, FliesOverABrowAndLosesThePartNormalToTheGroundWhereItLands) {
+TEST(PointMass, flies_over_a_brow_and_loses_the_part_normal_to_the_ground_where_it_lands) {
     // A ledge 5 m high: level, and level below it.
     const Profile ledge = [](double x) {
         if (x < 0) return ProfilePoint{5, 0, 0};

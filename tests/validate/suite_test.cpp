@@ -39,7 +39,7 @@ Row judged(const Expectation& e, double computed, std::optional<double> law = {}
     return rows.at(0);
 }
 
-TEST(Judge, ComparesWithinTheTolerance) {
+TEST(Judge, compares_within_the_tolerance) {
     EXPECT_EQ(judged(expect("acceleration", 10, 0.05), 10.4).verdict, Verdict::pass);
     EXPECT_NEAR(judged(expect("acceleration", 10, 0.05), 10.4).relative_error, 0.04, 1e-12);
     EXPECT_NEAR(judged(expect("acceleration", -10, 0.05), -9).relative_error, 0.1, 1e-12);
@@ -48,7 +48,7 @@ TEST(Judge, ComparesWithinTheTolerance) {
     EXPECT_EQ(judged(expect("drift", 0, 0.001), -0.0005).verdict, Verdict::pass);
 }
 
-TEST(Judge, TakesTheLawWhereTheEntryNamesNoValue) {
+TEST(Judge, takes_the_law_where_the_entry_names_no_value) {
     Expectation e = expect("acceleration", 0, 0.01);
     e.expected.reset();
     const Row row = judged(e, 1.51, 1.5);
@@ -56,7 +56,7 @@ TEST(Judge, TakesTheLawWhereTheEntryNamesNoValue) {
     EXPECT_EQ(row.verdict, Verdict::pass);
 }
 
-TEST(Judge, WhatWasNotComputedFails) {
+TEST(Judge, what_was_not_computed_fails) {
     for (const Comparison comparison : {Comparison::near, Comparison::at_most, Comparison::at_least}) {
         Expectation e = expect("drift", 1, 0.5);
         e.comparison = comparison;
@@ -71,7 +71,7 @@ TEST(Judge, WhatWasNotComputedFails) {
     EXPECT_TRUE(std::isnan(rows[0].computed));
 }
 
-TEST(Judge, BoundsFailOnTheirFarSideOnly) {
+TEST(Judge, bounds_fail_on_their_far_side_only) {
     Expectation most = expect("drift", 0.01, 0), least = expect("drift", 0.05, 0);
     most.comparison = Comparison::at_most;
     least.comparison = Comparison::at_least;
@@ -86,7 +86,7 @@ TEST(Judge, BoundsFailOnTheirFarSideOnly) {
     EXPECT_NEAR(judged(least, 0.04).relative_error, -0.2, 1e-12);
 }
 
-TEST(Judge, AnAnnouncedFailureIsAFailureUntilItPasses) {
+TEST(Judge, an_announced_failure_is_a_failure_until_it_passes) {
     Expectation e = expect("drift", 1, 0.1);
     e.known_failure = "creeps";
     EXPECT_EQ(judged(e, 2).verdict, Verdict::known_failure);
@@ -96,14 +96,14 @@ TEST(Judge, AnAnnouncedFailureIsAFailureUntilItPasses) {
     EXPECT_THAT(table_text({result}), HasSubstr("passes now"));
 }
 
-TEST(Judge, WhatIsOnlyShownNeverFails) {
+TEST(Judge, what_is_only_shown_never_fails) {
     Expectation e = expect("drift", 1, 0.1);
     e.gate = false;
     EXPECT_EQ(judged(e, 7).verdict, Verdict::shown);
     EXPECT_EQ(judged(e, not_computed).verdict, Verdict::shown);
 }
 
-TEST(Judge, CoarserResolutionsOnlyShowTheTrendUnlessNamed) {
+TEST(Judge, coarser_resolutions_only_show_the_trend_unless_named) {
     const std::vector<Measurement> measured = {{"drift", "coarse", 7, {}, true}, {"drift", "fine", 7, {}, false}};
     auto rows = judge(case_with({expect("drift", 1, 0.1)}), measured);
     ASSERT_EQ(rows.size(), 2U);
@@ -115,7 +115,7 @@ TEST(Judge, CoarserResolutionsOnlyShowTheTrendUnlessNamed) {
     EXPECT_EQ(rows.at(0).verdict, Verdict::fail);
 }
 
-TEST(Judge, AnEntryForAVariantGoesBeforeTheOneForAll) {
+TEST(Judge, an_entry_for_a_variant_goes_before_the_one_for_all) {
     Expectation all = expect("drift", 0, 1), one = expect("drift", 0, 1);
     one.where = "steep";
     one.known_failure = "creeps";
@@ -127,7 +127,7 @@ TEST(Judge, AnEntryForAVariantGoesBeforeTheOneForAll) {
     EXPECT_EQ(rows[1].verdict, Verdict::known_failure);
 }
 
-TEST(Judge, AnEntryForAVariantThatDoesNotExistFails) {
+TEST(Judge, an_entry_for_a_variant_that_does_not_exist_fails) {
     Expectation one = expect("drift", 0, 1);
     one.where = "stepe";
     const auto rows = judge(case_with({one}), {{"drift", "steep", 0, {}}});
@@ -154,7 +154,7 @@ CaseResult sample_result() {
     return result;
 }
 
-TEST(TableJson, HasTheAgreedKeysInOrderAndNullForWhatDoesNotExist) {
+TEST(TableJson, has_the_agreed_keys_in_order_and_null_for_what_does_not_exist) {
     const auto list = nlohmann::ordered_json::parse(table_json({sample_result()}));
     ASSERT_EQ(list.size(), 3U);
     const std::vector<std::string> keys = {"case",           "quantity",  "expected", "computed",
@@ -175,14 +175,14 @@ TEST(TableJson, HasTheAgreedKeysInOrderAndNullForWhatDoesNotExist) {
     EXPECT_EQ(list[2]["verdict"], "shown");
 }
 
-TEST(TableText, ShowsFailuresAndCountsThem) {
+TEST(TableText, shows_failures_and_counts_them) {
     const std::string text = table_text({sample_result()});
     EXPECT_THAT(text, HasSubstr("FAIL"));
     EXPECT_THAT(text, HasSubstr("+1.0 %"));
     EXPECT_THAT(text, HasSubstr("1 passed, 1 failed, 0 of them known, 1 shown, 0 skipped"));
 }
 
-TEST(Page, HoldsTableAndPlotsAndEscapesWhatItIsGiven) {
+TEST(Page, holds_table_and_plots_and_escapes_what_it_is_given) {
     const std::string html = page_html(page_data({sample_result()}));
     EXPECT_THAT(html, HasSubstr("A &lt;title&gt; | with *marks*"));
     EXPECT_THAT(html, HasSubstr("computed &lt;b&gt;"));
@@ -194,14 +194,14 @@ TEST(Page, HoldsTableAndPlotsAndEscapesWhatItIsGiven) {
     EXPECT_EQ(html.find("nan"), std::string::npos);
 }
 
-TEST(Page, ShowsWhatItsDataHoldAlsoAfterTheyWereWrittenAndRead) {
+TEST(Page, shows_what_its_data_hold_also_after_they_were_written_and_read) {
     const report::Json data = page_data({sample_result()});
     EXPECT_EQ(data["format"], "talus validation");
     EXPECT_EQ(data["cases"][0]["charts"][0]["kind"], "chart");
     EXPECT_TRUE(page_html(data) == page_html(report::Json::parse(data.dump())));
 }
 
-TEST(Markdown, HasItsPlotsBesideIt) {
+TEST(Markdown, has_its_plots_beside_it) {
     const test::TemporaryFolder folder;
     const Status written = write_markdown({sample_result()}, folder.path() / "validation.md");
     ASSERT_TRUE(written) << written.error().message;
@@ -215,7 +215,7 @@ TEST(Markdown, HasItsPlotsBesideIt) {
     EXPECT_FALSE(write_markdown({sample_result()}, "/dev/null/no/validation.md"));
 }
 
-TEST(RunCase, ComputesASmallSlab) {
+TEST(RunCase, computes_a_small_slab) {
     const Result<Case> loaded = CaseFolder(small_case).load();
     ASSERT_TRUE(loaded) << loaded.error().message;
     Watch watch;
@@ -226,7 +226,7 @@ TEST(RunCase, ComputesASmallSlab) {
     EXPECT_EQ(result.rows[0].quantity, "clearance, slope 30 degrees, f = 0.4");
 }
 
-TEST(RunCase, WithoutItsDataIsSkippedByName) {
+TEST(RunCase, without_its_data_is_skipped_by_name) {
     const Result<Case> loaded =
         CaseFolder(changed_case("description", "needs_data = \"no/such/raster.tif\"\ndescription")).load();
     ASSERT_TRUE(loaded) << loaded.error().message;
@@ -239,7 +239,7 @@ TEST(RunCase, WithoutItsDataIsSkippedByName) {
     EXPECT_TRUE(nlohmann::json::parse(table_json({result}))[0]["pass"].is_null());
 }
 
-TEST(RunCase, WhenAskedToStopDoesSo) {
+TEST(RunCase, when_asked_to_stop_does_so) {
     const Result<Case> loaded = CaseFolder(small_case).load();
     ASSERT_TRUE(loaded);
     const std::atomic<bool> stop = true;
