@@ -735,6 +735,13 @@ export interface SectionReading {
   passed_m3: number;
 }
 
+export interface GaugeReadings {
+  /** In the scene's order. */
+  gauges: GaugeReading[];
+  /** In the scene's order. */
+  cross_sections: SectionReading[];
+}
+
 /** A field observation beside the run. */
 export interface ObservedRow {
   /** Of the observation in the setup; null: one that names a file. */
@@ -760,13 +767,6 @@ export interface Observed {
   time_s: number;
   /** In the order of the scene file's sections. */
   rows: ObservedRow[];
-}
-
-export interface GaugeReadings {
-  /** In the scene's order. */
-  gauges: GaugeReading[];
-  /** In the scene's order. */
-  cross_sections: SectionReading[];
 }
 
 /** The front over chainage. */
