@@ -82,8 +82,11 @@ struct Centres {
     std::vector<int> wanted;  ///< -1: none
     std::vector<double> count;
 };
+/// A centre on an edge counts to the upper cell, also where rounding has moved it: share of a cell.
+constexpr double rounding = 1e-6;
+
 Centres centres_in(double from, double cell, int count, double x_min, double spacing, int own) {
-    const auto first_in = [&](int k) { return std::ceil((from + k * cell - x_min) / spacing - 0.5); };
+    const auto first_in = [&](int k) { return std::ceil((from + k * cell - x_min) / spacing - 0.5 - rounding); };
     Centres centres{std::vector<int>(static_cast<std::size_t>(own), -1), {}};
     centres.count.reserve(static_cast<std::size_t>(count));
     for (int k = 0; k < count; ++k) {

@@ -29,6 +29,7 @@ UNITS = {
     "deposit_depth": "m",
     "erosion_depth": "m",
 }
+_rounding = 1e-6  # of a cell
 _volumes = ("depth", "deposit_depth", "erosion_depth")  # their sum over cells means something
 
 
@@ -74,7 +75,7 @@ class Map:
     def on_grid(self, extent: Extent, cell_m: float | None = None) -> Map:
         """The same map on the cells of `cell_m`, m (None: as its own), between west, south, east and north edge. Beyond
         its own edges there is no value. A cell smaller than its own has the value of that in which its middle
-        lies. A larger cell has the greatest of the values whose cells have their middle in it; the least arrival time; of
+        lies. A cell as large or larger has the greatest of the values whose cells have their middle in it; the least arrival time; of
         depth, deposit and erosion the mean, with 0 where there is no value, so that a layer of one depth keeps that, and
         volumes stay where `cell_m` is a multiple of its own. As talus_get_map_on() of talus.h."""
         cell = self.cell if cell_m is None else arguments.number("cell_m", cell_m, above=0)
@@ -91,9 +92,10 @@ class Map:
 
     def _gathered(self, x_min: float, y_min: float, cell: float, shape: tuple[int, int]) -> npt.NDArray[np.float32]:
         # Which of the cells holds a middle of its own ones, and how many it would hold, had the map no edges: beyond them
-        # there is no debris. Both by the same rounding, so that a middle on an edge counts where it is added.
-        first_row = np.ceil((y_min + np.arange(shape[0] + 1) * cell - self.y_min) / self.cell - 0.5)
-        first_column = np.ceil((x_min + np.arange(shape[1] + 1) * cell - self.x_min) / self.cell - 0.5)
+        # there is no debris. Both by the same rounding, so that a middle on an edge counts where it is added: in the upper
+        # cell, also where rounding has moved it.
+        first_row = np.ceil((y_min + np.arange(shape[0] + 1) * cell - self.y_min) / self.cell - 0.5 - _rounding)
+        first_column = np.ceil((x_min + np.arange(shape[1] + 1) * cell - self.x_min) / self.cell - 0.5 - _rounding)
         row = np.searchsorted(first_row, np.arange(self.values.shape[0]), side="right") - 1
         column = np.searchsorted(first_column, np.arange(self.values.shape[1]), side="right") - 1
         within = np.logical_and.outer((row >= 0) & (row < shape[0]), (column >= 0) & (column < shape[1]))

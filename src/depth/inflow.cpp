@@ -51,10 +51,10 @@ bool Inflows::to_come() const {
                        [&](const Source& source) { return time_ < source.inflow.hydrograph.back().time; });
 }
 
-Result<double> Inflows::advance(Solver& solver, double longest, Grid<float>& added) {
+Result<double> Inflows::advance(Solver& solver, double longest, Grid<float>& added, double left) {
     const double from = solver.time();
     for (const Source& source : sources_) longest = source.longest_step(solver, longest);
-    const double step = solver.next_step(longest);
+    const double step = solver.next_step(std::min(longest, left));
     for (const Source& source : sources_) {
         for (const Cell& cell : source.cells) solver.end_inflow(cell.column, cell.row);
     }

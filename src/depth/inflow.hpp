@@ -1,5 +1,6 @@
 #pragma once
 
+#include <limits>
 #include <vector>
 
 #include "core/result.hpp"
@@ -22,8 +23,9 @@ class Inflows {
     /// Whether anything is still to come.
     [[nodiscard]] bool to_come() const;
     /// Takes a step of the solver, of at most `longest` s. Returns the volume that came in, m3, whose depth by cell is
-    /// added to `added`, m.
-    [[nodiscard]] Result<double> advance(Solver& solver, double longest, Grid<float>& added);
+    /// added to `added`, m. `left`: s, until the run ends: it cuts the last step and has no effect on others.
+    [[nodiscard]] Result<double> advance(Solver& solver, double longest, Grid<float>& added,
+                                         double left = std::numeric_limits<double>::infinity());
     /// What steps have changed, of the same inflows.
     template <class Archive>
     void keep(Archive& archive) {

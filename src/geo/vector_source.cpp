@@ -86,7 +86,7 @@ Status take_as_local(const std::string& file, const Crs& terrain_crs, VectorSour
     const bool undefined = is_undefined(source.layer->GetSpatialRef());
     if (source.crs.local && !undefined) return {};
     // GeoJSON without the member crs reads as WGS 84.
-    const bool geojson = EQUAL(source.data->GetDriver()->GetDescription(), "GeoJSON") && source.crs.epsg == 4326;
+    const bool geojson = was_geojson(*source.data, *source.layer) && source.crs.epsg == 4326;
     if (!undefined && !geojson) {
         return Error{fmt::format("{}: is in {}, the terrain in local coordinates; give the layer in those", file,
                                  source.crs.label())};

@@ -132,12 +132,13 @@ class GridRun {
         const params::SolverSpec& spec = scene_.spec.solver;
         keep_good_state();
         const auto start = std::chrono::steady_clock::now();
-        double longest = std::min(scene_.spec.outputs.sample_interval, spec.end_time - solver_.time());
+        double longest = scene_.spec.outputs.sample_interval;
         for (const terrain::Release& release : scene_.releases) {
             const double wait = release.spec.start_time - solver_.time();
             if (wait > 0) longest = std::min(longest, wait);
         }
-        const Result<double> stepped = inflows_.advance(solver_, longest, observer_.released());
+        const Result<double> stepped =
+            inflows_.advance(solver_, longest, observer_.released(), spec.end_time - solver_.time());
         friction_inside_.resist(solver_);
         wall_time_ += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
         smallest_ = std::min(smallest_, solver_.time_step());

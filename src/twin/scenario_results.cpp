@@ -125,7 +125,9 @@ std::function<json()> Scenario::figures() const {
 
 json Scenario::results_json() const {
     const auto [told, result] = parts_->outcome();
-    return json::parse(report::run_results(told, result, {}).dump());
+    // Paths are as the system has them.
+    const report::Json all = report::run_results(told, result, {});
+    return json::parse(all.dump(-1, ' ', false, report::Json::error_handler_t::replace));
 }
 
 json Scenario::measures_json() const {

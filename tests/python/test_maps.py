@@ -47,6 +47,10 @@ class GridTest(unittest.TestCase):
         # Beyond its edge there is no debris: of the four cells that would be in one that straddles it, two have any.
         np.testing.assert_allclose(even.on_grid((98, 60, 102, 64), 4).values, [[0.75]])
 
+    def test_cells_half_a_cell_off_have_one_value_each(self):
+        even = small("peak_depth", values=np.full((12, 12), 1.5, np.float32), x_min=0, y_min=0, cell=0.1)
+        np.testing.assert_array_equal(even.on_grid((0.05, 0.05, 1.15, 1.15)).values, np.full((11, 11), 1.5, np.float32))
+
     def test_is_that_of_the_library_on_the_same_cells(self):
         on = _library.library.talus_get_map_on
         on.argtypes = [ctypes.c_void_p, ctypes.c_char_p, ctypes.POINTER(_library.Grid), ctypes.POINTER(_library.Map), ctypes.c_void_p]

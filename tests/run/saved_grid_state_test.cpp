@@ -102,6 +102,18 @@ TEST_F(SavedGridState, of_the_end_is_continued_to_a_later_one_as_if_that_had_bee
     }
 }
 
+TEST_F(SavedGridState, of_the_end_of_a_fast_inflow_that_limits_the_step_is_continued_to_the_same_bits) {
+    write("flow.csv", "time_s,discharge_m3ps,velocity_mps\n0,30,25\n7,30,25\n");
+    const auto whole = run_scene(loaded({"solver.grid_cell_m=2"}), {});
+    ASSERT_TRUE(whole);
+    for (const char* end : {"solver.end_time_s=2.03", "solver.end_time_s=3.07"}) {
+        const std::string state = state_at(loaded({"solver.grid_cell_m=2", end}), {});
+        const auto rest = run_from(loaded({"solver.grid_cell_m=2"}), state);
+        ASSERT_TRUE(rest) << rest.error().message;
+        expect_same(*whole, *rest);
+    }
+}
+
 TEST_F(SavedGridState, of_a_later_time_than_the_end_has_nothing_left_to_compute) {
     const std::string state = state_at(loaded(), 7);
     const auto rest = run_from(loaded({"solver.end_time_s=6"}), state);
@@ -125,6 +137,8 @@ TEST_F(SavedGridState, of_something_else_is_refused_and_says_what_is_different) 
     EXPECT_EQ(refusal(state, {"material.friction_coefficient=0.5"}),
               "run.state: is of a scene with material.friction_coefficient = 0.2, here it is 0.5");
     EXPECT_THAT(refusal(state, {"solver.grid_cell_m=2.5"}), HasSubstr("solver.grid_cell_m"));
+    EXPECT_THAT(refusal(state, {"outputs.impact_filter_window_s=2"}), HasSubstr("outputs.impact_filter_window_s"));
+    EXPECT_THAT(refusal(state, {"outputs.impact_patch_edge_m=3"}), HasSubstr("outputs.impact_patch_edge_m"));
     EXPECT_EQ(refusal(state, {"solver.model=particles", "solver.target_particle_count=500"}),
               "run.state: is of a scene with solver.model = \"depth_averaged\", here it is \"particles\"");
     EXPECT_EQ(refusal(state, {"solver.target_particle_count=500"}), "(it ran)") << "it means nothing to this model";

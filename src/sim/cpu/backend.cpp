@@ -1,7 +1,6 @@
 #include "sim/cpu/backend.hpp"
 
 #include <algorithm>
-#include <algorithm>
 #include <array>
 
 #include "core/max_or_nan.hpp"
