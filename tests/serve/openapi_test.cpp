@@ -159,6 +159,10 @@ TEST_F(OpenApi, every_route_answers_as_described) {
                                                 {"/api/reports/{ticket}", 404},
                                                 {"/api/quit", 409},  // this server has no start page
                                                 {"/api/flow/{name}", 404},
+                                                {"PUT /api/overlays", 400},   // an empty file
+                                                {"POST /api/overlays", 409},  // nothing to bring back
+                                                {"/api/overlays/{id}", 404},
+                                                {"/api/overlays/{id}/picture", 404},
                                                 {"/api/scenarios/{s}/depth_averaged/layers/{name}", 404},
                                                 {"/api/scenarios/{s}/depth_averaged/comparison", 404}};  // off
     for (const serve::Route& route : server_->routes()) {
@@ -170,9 +174,11 @@ TEST_F(OpenApi, every_route_answers_as_described) {
         const std::string target = filled(route.pattern, route.method == "DELETE" ? "B" : "A", name) + query;
         const Answer answer = hand.ask(route.method, target, body);
         const bool no_address = route.method == "POST" && route.pattern == "/api/share";
-        EXPECT_EQ(answer.status, no_address                     ? 409
-                                 : refused.count(route.pattern) ? refused.at(route.pattern)
-                                                                : 200)
+        const std::string method_and_pattern = route.method + " " + route.pattern;
+        const std::string& key = refused.count(method_and_pattern) > 0 ? method_and_pattern : route.pattern;
+        EXPECT_EQ(answer.status, no_address               ? 409
+                                 : refused.count(key) > 0 ? refused.at(key)
+                                                          : 200)
             << answer.body.substr(0, 300);
         expect_described(route.method, route.pattern, answer);
         if (route.needs != serve::Role::nobody) {
@@ -381,7 +387,7 @@ TEST_F(OpenApi, exports_have_the_files_of_a_run_for_other_readers) {
     std::vector<std::string> listed;
     const json answer = as_viewer().get("/api/scenarios/A/exports").json();
     for (const json& file : answer["files"]) {
-        EXPECT_GT(file["bytes"], 0) << file;
+        if (file["name"] != "scene.zip") EXPECT_GT(file["bytes"], 0) << file;  // packed when it is asked for
         listed.push_back(file["name"]);
     }
     for (const char* name : {"gauges.csv", "stac_item.json", "results.kml"})
