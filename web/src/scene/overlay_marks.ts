@@ -94,7 +94,7 @@ export function overlayMarks(data: OverlayData, colour: string, opacity: number,
     const geometry = new BufferGeometry();
     geometry.setAttribute("position", new Float32BufferAttribute(kind.positions, 3));
     const marks = new Points(geometry, new PointsMaterial({ color: new Color(kind.colour).getHex(), size: kind.width_px, sizeAttenuation: false, map: discTexture(), transparent: true,
-      opacity: kind.opacity, alphaTest: 0.3, depthWrite: false }));
+      opacity: kind.opacity, alphaTest: 0.3 * kind.opacity, depthWrite: false }));
     marks.renderOrder = 6 + 0.01 * k;
     marks.frustumCulled = false;
     group.add(marks);

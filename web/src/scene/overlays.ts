@@ -1,19 +1,22 @@
 // Layers of people over the terrain: areas and pictures painted into one texture of the ground, lines and points above it.
 import { CanvasTexture, LinearFilter, LinearMipmapLinearFilter, SRGBColorSpace, Vector4, type Group } from "three";
 import type { ScenarioName } from "../protocol/frame";
-import type { Overlay, OverlayData, OverlayFeature } from "../protocol/messages";
+import type { Overlay, OverlayData, OverlayFeature, Overlays } from "../protocol/messages";
 import { watchAll } from "../state/cell";
+import { Fetched } from "../state/fetched";
 import { boundsOf, featureAt, nameAt, seenAs, styleOf } from "../state/overlays";
 import type { Twin } from "../state/twin";
 import type { Draped } from "./ground";
 import type { Label } from "./labels";
 import { disposeMarks, overlayMarks } from "./overlay_marks";
+import type { Relief } from "./relief";
 import type { Stage } from "./stage";
 import { tileBackground } from "./tile_background";
 
 /** What comes of one file stays as it is: it is asked for once. */
 type Content = { data: OverlayData } | { picture: ImageBitmap };
-interface Marks { key: string; group: Group }
+/** relief: the ground that they lie on; there is another one only where it has sunk. */
+interface Marks { key: string; relief: Relief; group: Group }
 
 const areaSide_px = 2048;
 const pictureSide_px = 4096;
@@ -24,13 +27,13 @@ const sinking_ms = 1000;
 export interface FoundFeature { overlay: Overlay; feature: OverlayFeature }
 
 export class OverlayLayers {
-  private readonly contents = new Map<string, Promise<Content | null>>();
-  private readonly there = new Map<string, Content>();
+  private readonly contents = new Fetched<Overlay, Content>((overlay) => this.load(overlay), () => this.refresh(), (content) => "picture" in content && content.picture.close());
+  /** The list that the contents are of. */
+  private listed: Overlays | null = null;
   private readonly marks = new Map<ScenarioName, Map<string, Marks>>();
   private texture: CanvasTexture | null = null;
   private painted = "";
-  private background: { address: string; picture: HTMLCanvasElement | null } | null = null;
-  private sunk = 0;
+  private background: { address: string; picture: HTMLCanvasElement } | null = null;
 
   constructor(private readonly twin: Twin, private readonly stage: Stage) {
     watchAll([twin.overlays, twin.ownOverlays, twin.shown], () => this.refresh());
@@ -39,7 +42,6 @@ export class OverlayLayers {
     stage.sinkings.watch(() => {
       timer ??= window.setTimeout(() => {
         timer = undefined;
-        ++this.sunk;
         this.refresh();
       }, sinking_ms);
     });
@@ -49,14 +51,14 @@ export class OverlayLayers {
   at(x: number, y: number, near: number): FoundFeature | null {
     const [west, south] = this.twin.scene.extent_m;
     for (const overlay of [...this.shownOverlays].reverse()) {
-      const content = this.there.get(overlay.id);
+      const content = this.contents.held(overlay.id);
       const feature = content && "data" in content ? featureAt(content.data, x - west, y - south, near) : null;
       if (feature) return { overlay, feature };
     }
     return null;
   }
   zoomTo(id: string): void {
-    const content = this.there.get(id);
+    const content = this.contents.held(id);
     const bounds = content && "data" in content ? boundsOf(content.data) : null;
     if (!bounds) return this.stage.rig.fit();
     const [west, south] = this.twin.scene.extent_m;
@@ -67,19 +69,6 @@ export class OverlayLayers {
 
   private get shownOverlays(): Overlay[] {
     return (this.twin.overlays.value?.overlays ?? []).filter((overlay) => seenAs(overlay, this.twin.ownOverlays.value.get(overlay.id)).visible);
-  }
-  private contentOf(overlay: Overlay): Content | null {
-    const content = this.there.get(overlay.id);
-    if (content) return content;
-    if (!this.contents.has(overlay.id)) {
-      this.contents.set(overlay.id, this.load(overlay).then((loaded) => {
-        if (loaded) this.there.set(overlay.id, loaded);
-        else this.contents.delete(overlay.id);  // asked for again when the list changes
-        this.refresh();
-        return loaded;
-      }));
-    }
-    return null;
   }
   private async load(overlay: Overlay): Promise<Content | null> {
     const { api } = this.twin;
@@ -93,17 +82,18 @@ export class OverlayLayers {
     const { twin } = this;
     const address = twin.tileAddress.value;
     if (address === null || this.background?.address === address) return this.refresh();
-    await twin.attempt(async () => {
+    let picture: HTMLCanvasElement | null = null;
+    const answered = await twin.attempt(async () => {
       const [width, height] = this.sizeOf(pictureSide_px / 2);
-      const picture = await tileBackground(await twin.api.tiles(), address, width, height);
-      if (twin.tileAddress.value !== address) return;
-      this.background = { address, picture };
-      if (picture === null) {
-        twin.notice("No tile came from this address, or it does not let other pages use its tiles (CORS).", "error");
-        twin.tileAddress.value = null;
-      }
+      picture = await tileBackground(await twin.api.tiles(), address, width, height);
     });
-    this.refresh();
+    if (twin.tileAddress.value !== address) return;
+    if (picture !== null) {
+      this.background = { address, picture };
+      return this.refresh();
+    }
+    if (answered) twin.notice("No tiles could be loaded: the server did not answer, or it does not allow other pages to use its tiles (CORS).", "error");
+    twin.tileAddress.value = null;  // so that it can be chosen again
   }
   private sizeOf(side_px: number): [number, number] {
     const [west, south, east, north] = this.twin.scene.extent_m;
@@ -113,11 +103,9 @@ export class OverlayLayers {
 
   private refresh(): void {
     const { twin, stage } = this;
-    const known = new Set((twin.overlays.value?.overlays ?? []).map((overlay) => overlay.id));
-    for (const id of [...this.there.keys()]) {
-      if (known.has(id)) continue;
-      this.there.delete(id);
-      this.contents.delete(id);
+    if (this.listed !== twin.overlays.value) {
+      this.listed = twin.overlays.value;
+      this.contents.keep(this.listed?.overlays ?? []);
     }
     const draped = this.paint();
     for (const [name, view] of stage.views) {
@@ -137,7 +125,7 @@ export class OverlayLayers {
   private paint(): Draped | null {
     const { twin } = this;
     const layers = this.shownOverlays.flatMap((overlay) => {
-      const content = this.contentOf(overlay);
+      const content = this.contents.of(overlay);
       return content && ("picture" in content || content.data.features.some((f) => f.kind === "area"))
         ? [{ overlay, content, ...seenAs(overlay, twin.ownOverlays.value.get(overlay.id)) }] : [];
     });
@@ -189,17 +177,18 @@ export class OverlayLayers {
     this.marks.set(name, held);
     const wanted = new Set<string>();
     for (const overlay of this.shownOverlays) {
-      const content = this.contentOf(overlay);
+      const content = this.contents.of(overlay);
       if (!content || !("data" in content)) continue;
       wanted.add(overlay.id);
       const { opacity } = seenAs(overlay, this.twin.ownOverlays.value.get(overlay.id));
-      const key = JSON.stringify([overlay.colour, opacity, this.sunk]);
+      const key = JSON.stringify([overlay.colour, opacity]);
       const before = held.get(overlay.id);
-      if (before?.key === key && before.group.parent === view.three) continue;
+      const { relief } = view;
+      if (before?.key === key && before.relief === relief && before.group.parent === view.three) continue;
       if (before) disposeMarks(before.group);
-      const group = overlayMarks(content.data, overlay.colour, opacity, view.relief, this.twin.scene);
+      const group = overlayMarks(content.data, overlay.colour, opacity, relief, this.twin.scene);
       view.three.add(group);
-      held.set(overlay.id, { key, group });
+      held.set(overlay.id, { key, relief, group });
     }
     for (const [id, { group }] of [...held]) {
       if (wanted.has(id)) continue;
@@ -212,7 +201,7 @@ export class OverlayLayers {
     const [west, south] = this.twin.scene.extent_m;
     const relief = this.stage.reliefOf(name);
     for (const overlay of this.shownOverlays) {
-      const content = this.there.get(overlay.id);
+      const content = this.contents.held(overlay.id);
       if (!content || !("data" in content)) continue;
       for (const feature of content.data.features) {
         if (feature.name === "" || labels.length >= mostNames) continue;
