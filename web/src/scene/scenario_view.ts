@@ -18,6 +18,7 @@ import { Houses } from "./natural/houses";
 import { Rocks } from "./natural/rocks";
 import { Trail } from "./natural/trail";
 import { Trees } from "./natural/trees";
+import type { Behind } from "./natural/veil";
 import { disposeLine, pixelLine } from "./lines";
 import type { Relief } from "./relief";
 import { Sky } from "./sky";
@@ -73,6 +74,11 @@ export class ScenarioView {
   private readonly sunInView = new Vector3();
   private readonly veiledFrom = new Vector3();
   private debrisMoved = true;
+  /** Of the trees: what they may hide. */
+  private readonly behind: Behind = {
+    ground: (x, y) => this.relief.at(x + this.relief.origin[0], y + this.relief.origin[1]) - this.relief.origin[2],
+    depth: (x, y) => this.depths.depthAt(x, y),
+  };
   shadowsDue = true;
 
   constructor(readonly name: ScenarioName, private readonly shared: Shared) {
@@ -289,12 +295,12 @@ export class ScenarioView {
   }
   /** True while there are trees to be looked at. */
   private veilTrees(camera: Camera): boolean {
+    if (this.trees.extent.isEmpty()) return false;  // all of those planted later are looked at
     const moved = this.debrisMoved || camera.position.distanceTo(this.veiledFrom) > 0.5;
     if (moved) this.veiledFrom.copy(camera.position);
     this.debrisMoved = false;
     const eye: Place | null = camera instanceof PerspectiveCamera ? camera.position.toArray() : null;
-    const { origin } = this.relief;
-    return this.trees.veil(eye, { ground: (x, y) => this.relief.at(x + origin[0], y + origin[1]) - origin[2], depth: (x, y) => this.depths.depthAt(x, y) }, moved);
+    return this.trees.veil(eye, this.behind, moved);
   }
   dispose(): void {
     for (const child of [...this.solids.children]) disposeSolid(child as Group);

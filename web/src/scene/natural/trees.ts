@@ -108,8 +108,8 @@ export class Trees {
    */
   veil(eye: Place | null, behind: Behind, moved: boolean): boolean {
     const total = this.planted[0].length + this.planted[1].length;
+    if (moved) this.left = total;  // also while they are not drawn: they are looked at once they are
     if (total === 0 || !this.meshes.some((mesh) => mesh.visible)) return false;
-    if (moved) this.left = total;
     const now = Math.min(this.left, lookedAt);
     for (let n = 0; n < now; ++n) {
       const at = (this.next + n) % total;
