@@ -1,6 +1,6 @@
 import { describe, expect, it } from "vitest";
 import type { Overlay, OverlayData, OverlayFeature } from "../src/protocol/messages";
-import { boundsOf, featureAt, groupFiles, mercator, nameAt, seenAs, styleOf, tileRange, tileUrl } from "../src/state/overlays";
+import { boundsOf, featureAt, groupFiles, listKey, mercator, nameAt, seenAs, styleOf, tileRange, tileUrl, withOwn, withoutOwn } from "../src/state/overlays";
 
 const feature = (kind: OverlayFeature["kind"], parts: number[][], name = "", style = -1): OverlayFeature => ({ kind, parts, name, attributes: {}, style });
 const area = feature("area", [[0, 0, 100, 0, 100, 100, 0, 100], [40, 40, 60, 40, 60, 60, 40, 60]], "parcel");
@@ -47,6 +47,25 @@ describe("what one person sees", () => {
     const overlay = { visible: true, opacity: 0.8 } as Overlay;
     expect(seenAs(overlay, undefined)).toEqual({ visible: true, opacity: 0.8 });
     expect(seenAs(overlay, { visible: false })).toEqual({ visible: false, opacity: 0.8 });
+  });
+  it("ends for one layer when that is changed for everybody", () => {
+    const own = withOwn(withOwn(withOwn(new Map(), "a", { visible: false }), "a", { opacity: 0.3 }), "b", { visible: true });
+    expect([...own]).toEqual([["a", { visible: false, opacity: 0.3 }], ["b", { visible: true }]]);
+    expect([...withoutOwn(own, "a")]).toEqual([["b", { visible: true }]]);
+    expect(own.size).toBe(2);
+    expect(withoutOwn(own, "c")).toBe(own);
+  });
+});
+
+describe("the list of layers", () => {
+  const roads = { id: "1", name: "Roads", visible: true, opacity: 0.8, colour: "#ff0000" } as Overlay;
+  const none = new Map();
+  const before = listKey([roads], none, false);
+  it("stays as it is when the same layers are told again", () => expect(listKey([{ ...roads }], new Map(), false)).toBe(before));
+  it("changes with a layer, its order, an own look and who has control", () => {
+    const others = [listKey([{ ...roads, opacity: 0.7 }], none, false), listKey([roads, { ...roads, id: "2" }], none, false), listKey([{ ...roads, id: "2" }, roads], none, false),
+      listKey([roads], withOwn(none, "1", { visible: false }), false), listKey([roads], none, true)];
+    expect(new Set([before, ...others]).size).toBe(6);
   });
 });
 

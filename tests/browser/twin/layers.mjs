@@ -53,7 +53,7 @@ export async function testLayers(run) {
       const clip = await quarter(page);
       await until(() => run.reddish(page, clip), (share) => share > 0.8, "the red quarter");
       assert.ok((await run.reddish(page, { ...clip, x: clip.x + 0.42 * (await viewClip(page)).width })) < 0.1, "the east is not red");
-      assert.match(await page.textContent(".overlays"), /1 feature · 1 beside the terrain/);
+      assert.match(await page.textContent(".overlays"), /1 feature · 1 outside the terrain/);
     }
     await run.shot(ada, "layers-plan");
   });
@@ -88,7 +88,7 @@ export async function testLayers(run) {
     await until(() => listed(bo), (names) => names.join() === "routes,Lots", "the new name");
     await ada.click("[aria-label='Remove Lots']");
     await until(() => listed(bo), (names) => names.join() === "routes", "one layer");
-    await ada.click("text=Undo: remove Lots");
+    await ada.click("text=Undo removal of Lots");
     await until(() => listed(bo), (names) => names.includes("Lots"), "both again");
   });
   await run.check("what cannot be read is refused in one sentence; the button takes files without a mouse", async () => {

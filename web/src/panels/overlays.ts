@@ -4,7 +4,7 @@ import type { FoundFeature, OverlayLayers } from "../scene/overlays";
 import type { Stage } from "../scene/stage";
 import { watchAll } from "../state/cell";
 import { count, number } from "../state/format";
-import { groupFiles, seenAs, type OwnLook } from "../state/overlays";
+import { groupFiles, listKey, seenAs, withOwn, withoutOwn, type OwnLook } from "../state/overlays";
 import type { Twin } from "../state/twin";
 import { zip } from "../state/zip";
 import { dialog, openDialog } from "../ui/dialog";
@@ -25,6 +25,8 @@ export class OverlaysPanel {
   /** Over the view: what was clicked. */
   readonly card = h("div", { class: "feature-card", role: "status", hidden: true });
   private readonly progress = h("p", { class: "hint", role: "status", hidden: true });
+  private readonly list = h("ul", { class: "items overlays" });
+  private listed = "";
   private busy = false;
 
   constructor(private readonly twin: Twin, private readonly stage: Stage, private readonly layers: OverlayLayers) {
@@ -33,48 +35,47 @@ export class OverlaysPanel {
       chooser.value = "";
     } });
     const add = button("Add layer…", { icon: "plus", class: "small", onclick: () => (twin.hindrance === null ? chooser.click() : twin.notice(twin.hindrance, "error")) });
-    const list = h("ul", { class: "items overlays" });
     const undo = button("", { icon: "undo", class: "small", onclick: () => void this.tell(() => twin.api.restoreOverlay()) });
-    const hint = h("p", { class: "hint" }, "Drop files onto the page: GeoPackage, GeoJSON, Shapefile (all its files, or a ZIP), GeoTIFF. Everybody sees them; they are kept in the saved session and change nothing of the run.");
+    const hint = h("p", { class: "hint" }, "Drop files onto the page: GeoPackage, GeoJSON, Shapefile (all of its files, or a ZIP) or GeoTIFF. Everybody sees them; they are saved with the session and do not affect the run.");
     watchAll([twin.overlays, twin.ownOverlays, twin.you, twin.controller, twin.connection, twin.people], () => {
       const { hindrance } = twin;
       const overlays = twin.overlays.value;
       add.disabled = hindrance !== null;
-      add.title = hindrance ?? "Roads, parcels, evacuation routes, geology, a map: from files";
+      add.title = hindrance ?? "Add roads, parcels, evacuation routes, geology or a map from files";
       hint.hidden = (overlays?.overlays.length ?? 0) > 0;
       undo.hidden = overlays === null || overlays.removed === null;
       undo.disabled = hindrance !== null;
-      undo.querySelector("span")?.replaceChildren(`Undo: remove ${overlays?.removed ?? ""}`);
-      // A control that is being used stays where it is.
-      if (list.contains(document.activeElement) && document.activeElement instanceof HTMLInputElement && document.activeElement.type === "range") this.update(list);
-      else this.fill(list);
+      undo.querySelector("span")?.replaceChildren(`Undo removal of ${overlays?.removed ?? ""}`);
+      this.fill();
     });
-    this.element = h("div", { class: "overlays-panel" }, h("div", { class: "group-head" }, h("h3", {}, "Layers"), add, chooser), this.progress, hint, list, undo, this.tiles());
+    this.element = h("div", { class: "overlays-panel" }, h("div", { class: "group-head" }, h("h3", {}, "Layers"), add, chooser), this.progress, hint, this.list, undo, this.tiles());
     this.listen();
   }
 
-  private fill(list: HTMLElement): void {
+  /** Only where it changes: what is clicked, or open, would be lost. */
+  private fill(): void {
+    const { list, twin } = this;
+    const overlays = twin.overlays.value?.overlays ?? [];
+    const key = listKey(overlays, twin.ownOverlays.value, twin.hindrance !== null);
+    if (key === this.listed) return;
+    this.listed = key;
     const focused = list.contains(document.activeElement) ? document.activeElement?.getAttribute("aria-label") : null;
     // The uppermost first.
-    list.replaceChildren(...[...(this.twin.overlays.value?.overlays ?? [])].reverse().map((overlay) => this.row(overlay)));
+    list.replaceChildren(...[...overlays].reverse().map((overlay) => this.row(overlay)));
     if (focused) list.querySelector<HTMLElement>(`[aria-label="${CSS.escape(focused)}"]`)?.focus();
-  }
-  private update(list: HTMLElement): void {
-    for (const overlay of this.twin.overlays.value?.overlays ?? []) {
-      const row = list.querySelector(`[data-overlay="${overlay.id}"]`);
-      const shown = row?.querySelector<HTMLInputElement>("input[type=checkbox]");
-      if (shown) shown.checked = seenAs(overlay, this.twin.ownOverlays.value.get(overlay.id)).visible;
-    }
   }
   private row(overlay: Overlay): HTMLElement {
     const { twin } = this;
     const mine = twin.hindrance !== null;
     const { visible, opacity } = seenAs(overlay, twin.ownOverlays.value.get(overlay.id));
     const see = (wanted: OwnLook): void => {
-      if (mine) twin.ownOverlays.value = new Map([...twin.ownOverlays.value, [overlay.id, { ...twin.ownOverlays.value.get(overlay.id), ...wanted }]]);
-      else this.change(overlay, wanted);
+      if (mine) twin.ownOverlays.value = withOwn(twin.ownOverlays.value, overlay.id, wanted);
+      else {
+        twin.ownOverlays.value = withoutOwn(twin.ownOverlays.value, overlay.id);
+        this.change(overlay, wanted);
+      }
     };
-    const forWhom = mine ? "for you alone" : "for everybody";
+    const forWhom = mine ? "for yourself only" : "for everybody";
     const on = h("input", { type: "checkbox", "aria-label": `Show ${overlay.name}`, title: `Show or hide it ${forWhom}`, onchange: () => see({ visible: on.checked }) });
     on.checked = visible;
     const slider = h("input", { type: "range", min: "0.1", max: "1", step: "0.05", "aria-label": `Opacity of ${overlay.name}`, title: `Opacity ${forWhom}`, onchange: () => see({ opacity: slider.valueAsNumber }) });
@@ -82,7 +83,7 @@ export class OverlaysPanel {
     const colour = overlay.kind === "vector" && !overlay.styled
       ? h("input", { type: "color", "aria-label": `Colour of ${overlay.name}`, title: "Colour", disabled: mine, value: overlay.colour, onchange: () => this.change(overlay, { colour: colour?.value ?? overlay.colour }) }) : null;
     const what = [overlay.kind === "picture" ? "picture" : `${count(overlay.features)} feature${overlay.features === 1 ? "" : "s"}`,
-      overlay.outside > 0 ? `${count(overlay.outside)} beside the terrain` : "", overlay.low !== null && overlay.high !== null ? `${number(overlay.low)} to ${number(overlay.high)}` : "",
+      overlay.outside > 0 ? `${count(overlay.outside)} outside the terrain` : "", overlay.low !== null && overlay.high !== null ? `${number(overlay.low)} to ${number(overlay.high)}` : "",
       overlay.styled && overlay.kind === "vector" ? "own style" : "", overlay.note, overlay.by ? `by ${overlay.by}` : ""].filter(Boolean).join(" · ");
     return h("li", { "data-overlay": overlay.id },
       h("div", { class: "row" }, h("label", { class: "check grow" }, on, h("b", { class: "grow" }, overlay.name)), colour,
@@ -92,10 +93,14 @@ export class OverlaysPanel {
       h("div", { class: "row" }, slider, h("small", { class: "muted grow" }, what)));
   }
   private change(overlay: Overlay, wanted: WantedOverlay): void {
-    void this.tell(() => this.twin.api.changeOverlay(overlay.id, wanted), false);
+    void this.tell(() => this.twin.api.changeOverlay(overlay.id, wanted), false).then((done) => {
+      if (done) return;
+      this.listed = "";  // the control shows what was refused
+      this.fill();
+    });
   }
-  private async tell(ask: () => Promise<{ done: string }>, loud = true): Promise<void> {
-    await this.twin.attempt(async () => {
+  private tell(ask: () => Promise<{ done: string }>, loud = true): Promise<boolean> {
+    return this.twin.attempt(async () => {
       const { done } = await ask();
       if (loud) this.twin.notice(`${done.charAt(0).toUpperCase()}${done.slice(1)}`, "done");
     });
@@ -115,9 +120,9 @@ export class OverlaysPanel {
     const { twin } = this;
     if (files.length === 0) return;
     if (twin.hindrance !== null) return twin.notice(twin.hindrance, "error");
-    if (this.busy) return twin.notice("Other files are being read; add these afterwards.", "error");
+    if (this.busy) return twin.notice("Other files are still being read. Add these when they are done.", "error");
     const { groups, alone } = groupFiles(files.map((file) => file.name));
-    if (alone.length > 0) twin.notice(`${alone[0]} belongs to another file of the same name; drop them together.`, "error");
+    if (alone.length > 0) twin.notice(`${alone[0]} belongs to another file with the same name; drop both together.`, "error");
     const named = (name: string): File => files.find((file) => file.name === name) as File;
     this.busy = true;
     for (const { main, parts } of groups) {
@@ -138,25 +143,33 @@ export class OverlaysPanel {
   private listen(): void {
     const hasFiles = (event: DragEvent): boolean => event.dataTransfer?.types.includes("Files") ?? false;
     const mark = (on: boolean): void => void this.stage.element.classList.toggle("dropping", on);
+    // A field for files takes its own, such as a private key; with a dialog open nothing else does.
+    const forField = (event: DragEvent): boolean => event.target instanceof HTMLInputElement && event.target.type === "file";
+    const inDialog = (): boolean => document.querySelector("dialog[open]") !== null;
     document.addEventListener("dragover", (event) => {
-      if (!hasFiles(event)) return;
+      if (!hasFiles(event) || forField(event)) return mark(false);
       event.preventDefault();
-      mark(true);
+      if (inDialog() && event.dataTransfer) event.dataTransfer.dropEffect = "none";
+      mark(!inDialog());
     });
     document.addEventListener("dragleave", (event) => event.relatedTarget === null && mark(false));
     document.addEventListener("drop", (event) => {
-      if (!hasFiles(event)) return;
-      event.preventDefault();
       mark(false);
-      void this.add([...(event.dataTransfer?.files ?? [])]);
+      if (!hasFiles(event) || forField(event)) return;
+      event.preventDefault();
+      if (!inDialog()) void this.add([...(event.dataTransfer?.files ?? [])]);
     });
     const { canvas } = this.stage;
     let down: PointerEvent | null = null;
-    canvas.addEventListener("pointerdown", (event) => (down = event.button === 0 ? event : null));
+    // Before the tool hears of it: a click that it uses, perhaps its last one, is not for a feature.
+    canvas.addEventListener("pointerdown", (event) => (down = event.button === 0 && this.twin.tool.value.kind === "none" ? event : null), { capture: true });
     canvas.addEventListener("pointerup", (event) => {
-      if (!down || Math.hypot(event.clientX - down.clientX, event.clientY - down.clientY) > 5 || this.twin.tool.value.kind !== "none") return;
+      if (!down || Math.hypot(event.clientX - down.clientX, event.clientY - down.clientY) > 5) return;
       const hit = this.stage.hit(event.clientX, event.clientY);
       this.tellOf(hit ? this.layers.at(hit.world[0], hit.world[1], nearest_px * this.stage.metresPerPixel) : null);
+    });
+    document.addEventListener("keydown", (event) => {
+      if (event.key === "Escape" && !inDialog()) this.tellOf(null);
     });
     this.twin.overlays.watch(() => this.tellOf(null));
   }
@@ -174,15 +187,17 @@ export class OverlaysPanel {
     const { twin } = this;
     const choice = h("select", { "aria-label": "Background map", onchange: () => (twin.tileAddress.value = choice.value || null) }, h("option", { value: "" }, "No background map"));
     const whole = h("div", { class: "tiles", hidden: true }, h("label", { class: "row" }, "Background", choice),
-      h("p", { class: "hint" }, "Tiles are fetched by your browser from this address, for you alone; the address sees where the terrain is."));
+      h("p", { class: "hint" }, "Tiles are fetched by your browser from this address and shown only to you; the provider can tell where the terrain is."));
     twin.tileAddress.watch((address) => (choice.value = address ?? ""));
+    let asked = false;
     twin.overlays.watch((overlays) => {
-      if (!overlays?.tiles || !whole.hidden) return;
-      whole.hidden = false;
+      if (!overlays?.tiles || asked) return;
+      asked = true;
       void twin.attempt(async () => {
         const { addresses } = await twin.api.tiles();
         choice.append(...addresses.map((address) => h("option", { value: address, title: address }, address.replace(/^https?:\/\//, ""))));
-      });
+        whole.hidden = false;
+      }).then((done) => (asked = done));
     });
     return whole;
   }

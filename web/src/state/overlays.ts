@@ -5,6 +5,12 @@ import type { Overlay, OverlayData, OverlayFeature, OverlayStyle, Point } from "
 export interface OwnLook { visible?: boolean; opacity?: number }
 export const seenAs = (overlay: Overlay, own: OwnLook | undefined): { visible: boolean; opacity: number } =>
   ({ visible: own?.visible ?? overlay.visible, opacity: own?.opacity ?? overlay.opacity });
+export type OwnLooks = ReadonlyMap<string, OwnLook>;
+export const withOwn = (own: OwnLooks, id: string, wanted: OwnLook): OwnLooks => new Map([...own, [id, { ...own.get(id), ...wanted }]]);
+/** One's own look of a layer ends where it is changed for everybody. */
+export const withoutOwn = (own: OwnLooks, id: string): OwnLooks => (own.has(id) ? new Map([...own].filter(([of]) => of !== id)) : own);
+/** What the list of layers shows: it stays as it is, with what is being used in it, until this changes. fixed: they cannot be changed for everybody. */
+export const listKey = (overlays: readonly Overlay[], own: OwnLooks, fixed: boolean): string => JSON.stringify([overlays, [...own], fixed]);
 
 const partsOf: Record<string, readonly string[]> = {
   shp: ["shx", "dbf", "prj", "cpg", "qpj", "sbn", "sbx"], tif: ["tfw", "tifw", "wld", "prj"], tiff: ["tfw", "tifw", "wld", "prj"],

@@ -15,7 +15,7 @@ import { usualBed, usualZone, type ZoneSet } from "./ground";
 import { usualHydrograph } from "./inflows";
 import { runKey, runKeys } from "./alerts";
 import { keepFormer } from "./former_session";
-import type { OwnLook } from "./overlays";
+import type { OwnLooks } from "./overlays";
 import { stateAt } from "./past";
 
 export interface ScenarioCells {
@@ -91,7 +91,7 @@ export class Twin {
   /** Layers over the terrain, from bottom to top. */
   readonly overlays = new Cell<Overlays | null>(null);
   /** How this person sees layers otherwise than everybody, by id: one who cannot change them for all. */
-  readonly ownOverlays = new Cell<ReadonlyMap<string, OwnLook>>(new Map());
+  readonly ownOverlays = new Cell<OwnLooks>(new Map());
   /** Address of map tiles below the layers, of this browser alone; null: none. */
   readonly tileAddress = new Cell<string | null>(null);
   readonly tool = new Cell<Tool>({ kind: "none" });
