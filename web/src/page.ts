@@ -101,7 +101,7 @@ function buildPage(page: HTMLElement, twin: Twin): void {
   const secondModel = new DepthAveragedPanel(twin);
   const section = sectionPanel(twin, stage);
   const readings = tabs("Readings", [
-    { name: "front", title: "Front", content: frontCharts(twin, observed.element, secondModel.element) },
+    { name: "front", title: "Front", content: frontCharts(twin, observed.element, secondModel.element), onshow: () => void Promise.all([observed.refresh(), secondModel.refresh()]) },
     { name: "time", title: "Time", content: timeCharts(twin) },
     { name: "points", title: "Points", content: h("div", {}, pinsPanel(twin, stage), probes.element) },
     { name: "layers", title: "Layers", content: overlays.element },
@@ -132,7 +132,7 @@ function buildPage(page: HTMLElement, twin: Twin): void {
     if (line) readings.show("section");
   });
   new Refresher(twin, () => {
-    if (readings.shown() === "front" || readings.shown() === "compare") void observed.refresh();
+    if (readings.shown() === "front") void observed.refresh();
     if (readings.shown() === "front") void secondModel.refresh();
     if (readings.shown() === "points") void probes.refresh();
     if (readings.shown() === "section") section.refresh();

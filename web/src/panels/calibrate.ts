@@ -15,7 +15,7 @@ function observationTable(status: CalibrationStatus): HTMLElement {
   const ran = status.observations.some((o) => o.best !== null || o.deviation !== null);
   const sign = { equal: "", at_least: "at least ", below: "below " };
   return h("table", { class: "plain observed" }, h("thead", {}, h("tr", {}, h("th", { scope: "col" }, "Observation"), h("td", {}, "Observed"), ran ? h("td", {}, "Best run") : null)),
-    h("tbody", {}, ...status.observations.map((o) => h("tr", { title: o.deviation === null ? "" : `${number(Math.abs(o.deviation), 2)} standard deviations off` },
+    h("tbody", {}, ...status.observations.map((o) => h("tr", { title: o.deviation === null ? "" : `${number(Math.abs(o.deviation), 2)} standard deviations from the observation` },
       h("th", { scope: "row" }, o.name), h("td", {}, `${sign[o.is]}${number(o.observed)} ± ${quantity(o.uncertainty, o.unit, 2)}`),
       ran ? h("td", {}, o.best === null ? "none" : quantity(o.best, o.unit)) : null))));
 }
@@ -104,7 +104,7 @@ export function calibratePanel(twin: Twin): HTMLElement {
     void twin.act({ action: "set_parameters", values: Object.fromEntries(status.parameters.map((p, i) => [p.key, Number(best.values[i].toPrecision(4))])) });
   } });
   const why = h("p", { class: "hint calibrate-why" });
-  const about = h("p", { class: "hint" }, "Finds the values that explain the field observations. Runs use the scene as it was opened, with the observations of scenario A and without other changes in the page; the live run continues beside them.");
+  const about = h("p", { class: "hint" }, "Finds the values that explain the field observations. The runs use the scene as it was opened, with the observations of scenario A but no other changes made in the page; the live run continues alongside.");
   const table = h("details", {}, h("summary", {}, "All runs"));
   const element = h("div", { class: "calibrate" }, about, why, going, map.element, found, table, observed, form);
 

@@ -6,6 +6,7 @@ import { comparisonRows, differenceText, untouched, type PointPeaks, type Row, t
 import { paneText } from "../state/differences";
 import { fixed, unitText } from "../state/format";
 import { pressures } from "../state/pressures";
+import { rerunning } from "../state/rerunning";
 import type { Probe, Twin } from "../state/twin";
 import { button, h } from "../ui/dom";
 import { comparisonReport } from "./comparison_report";
@@ -29,7 +30,8 @@ export class ComparePanel {
   private readonly rest = h("p", { class: "hint" });
   private readonly notEqual = h("p", { class: "hint", role: "status" });
   private rows: Row[] = [];
-  private busy = false;
+  /** Fetches the key figures and what was observed; the table follows the rest by itself. Whoever waits for it has those of now. */
+  readonly refresh = rerunning(() => this.fetch());
 
   constructor(private readonly twin: Twin, picture: Picture, private readonly observed: ObservedTable) {
     const report = button("Save the comparison", { icon: "download", class: "small", title: "One page with both views, the table and the charts (HTML)",
@@ -55,15 +57,13 @@ export class ComparePanel {
     this.draw();
     void this.refresh();
   }
-  /** Fetches the key figures; the table follows the rest by itself. */
-  async refresh(): Promise<void> {
+  private async fetch(): Promise<void> {
     const { twin } = this;
-    if (this.busy || twin.shown.value.length < 2 || twin.connection.value.state !== "open") return;
-    this.busy = true;
-    await twin.attempt(async () => {
+    if (twin.shown.value.length < 2 || twin.connection.value.state !== "open") return;
+    const figures = twin.attempt(async () => {
       await Promise.all(twin.shown.value.map(async (name) => this.figures.set(name, await twin.api.figures(name))));
     });
-    this.busy = false;
+    await Promise.all([figures, this.observed.refresh()]);
     this.draw();
   }
   private side(name: ScenarioName): Side {

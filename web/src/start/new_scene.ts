@@ -156,7 +156,7 @@ export class NewScene {
     const unitName = units.find(([value]) => value === proposed)?.[1] ?? "";
     const rows = [
       terrain.crs === "" || this.mending.epsg !== null || this.mending.local ? h("div", { class: "row wrap" }, h("span", {}, "Reference system, EPSG:"), epsg, button("Apply", { class: "small", onclick: () => mend({ epsg: numberOf(epsg), local: false }) }),
-        this.mending.local ? null : button("None: local coordinates in metres", { class: "small", title: "For a laboratory model, such as a flume, whose place on the globe does not matter", onclick: () => mend({ epsg: null, local: true }) })) : null,
+        this.mending.local ? null : button("None: local coordinates in metres", { class: "small", title: "For a laboratory model, such as a flume, whose location on Earth does not matter", onclick: () => mend({ epsg: null, local: true }) })) : null,
       this.mending.metric ? button("Undo conversion", { class: "small", onclick: () => mend({ metric: false }) })
         : terrain.problem !== null && terrain.metric_crs !== "" ? button(`Convert to square cells in metres (${terrain.metric_crs})`, { class: "small", onclick: () => mend({ metric: true, metres_per_unit: proposed }) }) : null,
       proposed !== factor ? h("div", { class: "row wrap" }, h("span", {}, `The file suggests heights in ${unitName}.`), button(`Convert heights from ${unitName}`, { class: "small", onclick: () => mend({ metres_per_unit: proposed }) })) : null,

@@ -2,6 +2,7 @@
 import type { Figure, GaugeReading, Impact, BarrierImpact, Impacts, ObservedRow, Parameter, Setup } from "../protocol/messages";
 import { changedKeys } from "./differences";
 import { decimals, fixed } from "./format";
+import { pairedRows } from "./observed";
 
 export interface Row { group: string; name: string; unit: string; a: number | string | null; b: number | string | null }
 export interface Side { setup: Setup | null; figures: readonly Figure[]; impacts: Impacts | null; gauges: readonly GaugeReading[]; observed?: readonly ObservedRow[]; points: readonly PointPeaks[] }
@@ -39,9 +40,11 @@ function paired<T extends { name: string }>(group: string, key: (of: T) => strin
 
 /** What both runs have for what was observed in the field. */
 function observedRows(a: readonly ObservedRow[], b: readonly ObservedRow[]): Row[] {
-  const all = [...a, ...b.filter((other) => !a.some(({ name }) => name === other.name))];
-  return all.map((row): Row => ({ group: "Field observations", name: `${row.name}, observed ${row.is === "at_least" ? "at least " : row.is === "below" ? "below " : ""}${fixed(row.observed, decimals(row.observed))}`, unit: row.unit,
-    a: a.find(({ name }) => name === row.name)?.computed ?? null, b: b.find(({ name }) => name === row.name)?.computed ?? null })).filter((row) => row.a !== null || row.b !== null);
+  return pairedRows([a, b]).flatMap(([one, other]): Row[] => {
+    const row = one ?? other;
+    const limit = row?.is === "at_least" ? "at least " : row?.is === "below" ? "below " : "";
+    return row === null ? [] : [{ group: "Field observations", name: `${row.name} (observed: ${limit}${fixed(row.observed, decimals(row.observed))})`, unit: row.unit, a: one?.computed ?? null, b: other?.computed ?? null }];
+  }).filter((row) => row.a !== null || row.b !== null);
 }
 
 /** until_s: time of the recording that houses, barriers and gauges are of; null: they are of the runs so far, as figures and points always are. */
