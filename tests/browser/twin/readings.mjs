@@ -37,10 +37,10 @@ async function readPast(page, server, last) {
 async function exportFlow(page, server) {
   const flow = page.locator("dialog .flow-export");
   const summary = flow.locator(".flow-summary");
-  await until(() => summary.textContent(), (text) => /^\d+ moments from 0\.0 to [\d.]+ s, 1\.0 s apart; about [\d.]+\s(kB|MB)\.$/.test(text), "what it will contain");
-  await flow.getByLabel("Seconds between moments").fill("2");
-  await flow.getByLabel("Seconds between moments").press("Tab");
-  await until(() => summary.textContent(), (text) => /, 2\.0 s apart/.test(text), "fewer moments");
+  await until(() => summary.textContent(), (text) => /^\d+ frames from 0 to [\d.]+ s, 1 s apart; about [\d.]+\s(kB|MB)\.$/.test(text), "what it will contain");
+  await flow.getByLabel("Seconds between frames").fill("2");
+  await flow.getByLabel("Seconds between frames").press("Tab");
+  await until(() => summary.textContent(), (text) => /, 2 s apart/.test(text), "fewer frames");
   await flow.locator("button:has-text('Write files')").click();
   const one = flow.locator("button:has-text('Save run.glb')");
   await one.waitFor();

@@ -2,8 +2,8 @@
 import { Refused } from "../protocol/api";
 import type { FlowExport, FlowFormat, FlowOffer } from "../protocol/messages";
 import type { ScenarioName } from "../protocol/frame";
-import { flowProgress, flowSummary, flowTitles } from "../state/flow";
-import { bytes, fixed } from "../state/format";
+import { flowProgress, flowSummary, flowTitles, intervalProblem } from "../state/flow";
+import { bytes } from "../state/format";
 import type { Twin } from "../state/twin";
 import { mostZipped_bytes, zip, type Member } from "../state/zip";
 import { button, h } from "../ui/dom";
@@ -20,7 +20,7 @@ export async function flowExport(twin: Twin, scenario: ScenarioName, name: strin
 
   const table = h("tbody", {});
   const summary = h("p", { class: "hint flow-summary", role: "status" });
-  const interval = h("input", { type: "number", step: "any", min: offer.shortest_interval_s, "aria-label": "Seconds between moments", value: String(offer.interval_s) });
+  const interval = h("input", { type: "number", step: "any", min: offer.shortest_interval_s, "aria-label": "Seconds between frames", value: String(offer.interval_s) });
   const start = button("Write files", { class: "primary", onclick: () => void begin() });
   const bar = h("progress", { "aria-label": "Share written", max: 1 });
   const told = h("p", { class: "flow-told", role: "status" });
@@ -30,10 +30,10 @@ export async function flowExport(twin: Twin, scenario: ScenarioName, name: strin
     void twin.attempt(() => saveFiles(twin, job, name)).then(() => (saving.disabled = false));
   } });
   const element = h("section", { class: "flow-export", "aria-label": "Moving flow" }, h("h3", {}, "Moving flow"),
-    h("p", { class: "hint" }, "The debris over time as it was seen, with every change on the way. An animation has 100 moments at most; maps take at most 2 GB while they are written."),
-    reader ? h("p", { class: "hint" }, "This link only reads: somebody with the controllers' link can write the files.") : h("div", {},
+    h("p", { class: "hint" }, "The debris over time as shown in the view, including changes made during the run. An animation has at most 100 frames; maps may use up to 2 GB of disk while they are being written."),
+    reader ? h("p", { class: "hint" }, "This is a viewer's link: ask somebody with the controllers' link to write the files.") : h("div", {},
       h("table", { class: "plain exports" }, table),
-      h("div", { class: "row" }, h("label", { class: "row grow" }, "A moment every", interval, "s"), start), summary),
+      h("div", { class: "row" }, h("label", { class: "row grow" }, "One frame every", interval, "s"), start), summary),
     told, h("div", { class: "row" }, bar, cancel), saving);
 
   const showOffer = (): void => {
@@ -44,15 +44,17 @@ export async function flowExport(twin: Twin, scenario: ScenarioName, name: strin
         summarise();
       } });
       return h("tr", {}, h("th", { scope: "row" }, h("label", { class: "check" }, tick, flowTitles[format.name]),
-        h("div", { class: "muted" }, format.refused === null ? `${format.what}: ${format.files.join(", ")}` : `Not possible: ${format.refused}`)),
+        h("div", { class: "muted" }, format.refused === null ? `${format.what}: ${format.files.join(", ")}` : `Not available: ${format.refused}`)),
       h("td", {}, format.refused === null ? `about ${bytes(format.bytes)}` : ""));
     }));
     summarise();
   };
   const wanted = (): FlowFormat[] => offer.formats.filter((format) => chosen.has(format.name) && format.refused === null).map((format) => format.name);
+  const problem = (): string => intervalProblem(interval.value, offer.shortest_interval_s);
+  const enable = (): void => void (start.disabled = problem() !== "" || wanted().length === 0 || busy(job));
   const summarise = (): void => {
-    summary.textContent = flowSummary(offer, wanted());
-    start.disabled = wanted().length === 0 || busy(job);
+    summary.textContent = problem() || flowSummary(offer, wanted());
+    enable();
   };
   const show = (now: FlowExport): void => {
     job = now;
@@ -79,22 +81,20 @@ export async function flowExport(twin: Twin, scenario: ScenarioName, name: strin
     following = false;
   };
   const begin = async (): Promise<void> => {
+    // As it is typed: the offer for it may not have come yet.
+    if (problem() !== "") return summarise();
     start.disabled = true;
-    await twin.attempt(async () => show(await twin.api.startFlow(scenario, wanted(), offer.interval_s)));
+    await twin.attempt(async () => show(await twin.api.startFlow(scenario, wanted(), Number(interval.value))));
     summarise();
     await follow();
   };
   let asked = 0;
+  interval.addEventListener("input", enable);
   interval.addEventListener("change", () => {
-    const seconds = Number(interval.value);
-    if (!(seconds >= offer.shortest_interval_s && seconds <= 1e7)) {
-      summary.textContent = `Seconds between moments: at least ${fixed(offer.shortest_interval_s, 1)}, that of the recording.`;
-      start.disabled = true;
-      return;
-    }
     const question = ++asked;
+    if (problem() !== "") return summarise();
     void twin.attempt(async () => {
-      const answer: FlowOffer = await twin.api.flowOffer(scenario, seconds);
+      const answer: FlowOffer = await twin.api.flowOffer(scenario, Number(interval.value));
       if (question !== asked) return;
       offer = answer;
       showOffer();
