@@ -44,7 +44,7 @@ describe("the form of an entry", () => {
   it("says what each kind needs, and what no value means", () => {
     expect(needsText(runUp)).toBe("x; y; height");
     expect(needsText(velocity)).toBe("chainage; one of front velocity, debris speed");
-    expect(hintOf(key("uncertainty_mps", { unit: "m/s", absent: "a fifth of the value", help: "" }))).toContain("empty: a fifth of the value");
+    expect(hintOf(key("uncertainty_mps", { unit: "m/s", absent: "a fifth of the value", help: "" }))).toContain("if empty: a fifth of the value");
   });
 });
 

@@ -26,7 +26,7 @@ export async function testTables(run) {
     await ada.click("button:has-text('Add an observation')");
     await clickGround(ada, 0.5, 0.5);
     await ada.selectOption("[aria-label='What was observed']", "run_up");
-    assert.match(await ada.textContent("dialog"), /Needs: .*height/);
+    assert.match(await ada.textContent("dialog"), /Required: .*height/);
     assert.match(await ada.inputValue("dialog [data-key=x_m]"), /^\d{6}(\.\d+)?$/, "the place of the click");
     await fill(ada, { name: "Bank at the bend", height_m: "tall" });
     await ada.click("dialog button[type=submit]");

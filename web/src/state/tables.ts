@@ -49,11 +49,11 @@ export function valueFrom(key: TableKey, text: string): TableValue {
 /** What a field says below it: the range, and what no value means. */
 export function hintOf(key: TableKey): string {
   const range = key.is === "number" && key.allowed ? `${key.allowed}${key.unit ? ` ${unitText(key.unit)}` : ""}` : "";
-  const none = key.required || key.absent === "" || key.absent === "none" ? "" : `empty: ${key.absent.replaceAll("_", " ")}`;
+  const none = key.required || key.absent === "" || key.absent === "none" ? "" : `if empty: ${key.absent.replaceAll("_", " ")}`;
   return [key.help, [range, none].filter(Boolean).join("; ")].filter(Boolean).join(" ");
 }
 
-/** "needs chainage, time": what the server refuses to do without. */
+/** "chainage; one of front velocity, debris speed": what the server refuses to do without. */
 export function needsText(section: TableSection): string {
   const label = (name: string): string => section.keys.find(({ key }) => key === name)?.label ?? name;
   const required = section.keys.filter((k) => k.required && k.key !== "name").map((k) => k.label);
