@@ -41,7 +41,10 @@ async function sheet(name, rows) {
 }
 
 try {
-  const post = (body) => fetch(`${server.base}api/scenarios/A/actions`, { method: "POST", body: JSON.stringify(body), headers: { Authorization: `Bearer ${server.token}`, "Content-Type": "application/json" } });
+  const post = async (body) => {
+    const response = await fetch(`${server.base}api/scenarios/A/actions`, { method: "POST", body: JSON.stringify(body), headers: { Authorization: `Bearer ${server.token}`, "Content-Type": "application/json" } });
+    if (!response.ok) throw new Error(`${body.action}: ${response.status} ${await response.text()}`);
+  };
   await post({ action: "set_speed", factor: null });
   await post({ action: "run" });
   const state = () => server.ask("scenarios/A/state");

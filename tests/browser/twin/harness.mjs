@@ -5,6 +5,7 @@ import { createHash } from "node:crypto";
 import { existsSync, mkdirSync, readFileSync, writeFileSync } from "node:fs";
 import { join } from "node:path";
 import { createInterface } from "node:readline";
+import { inflateRawSync } from "node:zlib";
 
 /// Without the variables of this test, which the program does not know and refuses.
 export const programEnvironment = Object.fromEntries(Object.entries(process.env).filter(([name]) => !/^TALUS_(?!DATA$|SIMD$)/.test(name)));
@@ -297,13 +298,18 @@ export async function saved(page, click) {
   const [download] = await Promise.all([page.waitForEvent("download"), click()]);
   return { name: download.suggestedFilename(), bytes: readFileSync(await within(download.path(), "the downloaded file")) };
 }
-/** The members of a ZIP that stores them as they are, by name. */
+/** The members of a ZIP, as its directory lists them, by name. */
 export function unzipped(bytes) {
   const members = {};
-  for (let at = 0; bytes.readUInt32LE(at) === 0x04034b50; ) {
-    const [size, name] = [bytes.readUInt32LE(at + 18), bytes.readUInt16LE(at + 26)];
-    members[bytes.subarray(at + 30, at + 30 + name).toString()] = bytes.subarray(at + 30 + name, at + 30 + name + size);
-    at += 30 + name + size;
+  const end = bytes.lastIndexOf(Buffer.from([0x50, 0x4b, 5, 6]));
+  let at = bytes.readUInt32LE(end + 16);
+  for (let left = bytes.readUInt16LE(end + 10); left > 0; --left) {
+    const [packed, size, local] = [bytes.readUInt16LE(at + 10) === 8, bytes.readUInt32LE(at + 20), bytes.readUInt32LE(at + 42)];
+    const [name, extra, comment] = [28, 30, 32].map((k) => bytes.readUInt16LE(at + k));
+    const begin = local + 30 + bytes.readUInt16LE(local + 26) + bytes.readUInt16LE(local + 28);
+    const content = bytes.subarray(begin, begin + size);
+    members[bytes.subarray(at + 46, at + 46 + name).toString()] = packed ? inflateRawSync(content) : content;
+    at += 46 + name + extra + comment;
   }
   return members;
 }

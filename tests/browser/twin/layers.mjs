@@ -112,10 +112,18 @@ export async function testLayers(run) {
     await ada.click("[aria-label=Orbit]");
     await ada.click("[aria-label=Fit]");
     const clip = await viewClip(ada);
-    await until(() => run.colours(ada, clip), ({ bluish }) => bluish > 0.002, "the blue road");
+    /** Without the layer there is less of its colour, and with it as much again. */
+    const adds = async (name, colour, least) => {
+      const shown = (await run.still(ada, clip))[colour];
+      await ada.uncheck(`[aria-label='Show ${name}']`);
+      await until(async () => (await run.colours(ada, clip))[colour], (share) => share < shown - least, `${name}, of ${shown}, goes`);
+      await ada.check(`[aria-label='Show ${name}']`);
+      await until(async () => (await run.colours(ada, clip))[colour], (share) => share > shown - least / 2, `${name} is back`);
+    };
+    await adds("routes", "bluish", 0.002);
     await run.shot(ada, "layers-oblique");
     await ada.locator("label:has-text('Natural') input").check();
-    await until(() => run.colours(ada, clip), ({ reddish }) => reddish > 0.02, "the red lot in the natural look");
+    await adds("Lots", "reddish", 0.02);
     await run.shot(ada, "layers-natural");
   });
   await run.check("map tiles are off until somebody chooses them, are fetched by that browser alone, and go again", async () => {
