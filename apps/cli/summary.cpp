@@ -113,8 +113,7 @@ std::string verdict_text(const scene::Scene& scene, const run::RunVerdict& verdi
 std::string front_text(const scene::Scene& scene, const observe::Observation& seen) {
     const double chainage = seen.run_out.front_chainage;
     std::string text = fmt::format("to chainage {:.{}f} m", chainage, decimals_for(seen.run_out.along_flow, 0));
-    if (!seen.followed_path) return text;
-    text += " of the path that debris followed; until now chainages were along the traced one";
+    if (seen.followed_path) text += " of the path that debris followed; until now chainages were along the traced one";
     if (chainage < 0.9 * seen.run_out.along_flow) {
         text += fmt::format("; beyond it debris was at most {:g} m deep (outputs.arrival_depth_m)",
                             scene.spec.outputs.arrival_depth);

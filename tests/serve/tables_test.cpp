@@ -7,6 +7,7 @@
 #include "scene/bundle.hpp"
 #include "scene/scene.hpp"
 #include "serve/alerts_fixture.hpp"
+#include "support/foreign.hpp"
 
 namespace talus::test {
 namespace {
@@ -15,7 +16,7 @@ using ::testing::HasSubstr;
 
 const json arrival = {{"action", "put_observation"},
                       {"section", "arrival"},
-                      {"values", {{"name", "Bridge"}, {"chainage_m", 20}, {"time_s", 3}}}};
+                      {"values", {{"name", "Bridge"}, {"chainage_m", 40}, {"time_s", 3}}}};
 const json alarm = {{"action", "put_alarm"},
                     {"values", {{"name", "coming"}, {"chainage_m", 30}, {"distance_m", 25}, {"message", "Go."}}}};
 
@@ -47,7 +48,7 @@ TEST_F(TablesTest, observations_stand_beside_what_the_run_computes) {
         const json rows = as_viewer().get("/api/scenarios/A/observed").json()["rows"];
         EXPECT_EQ(rows.size(), before + 1);
         for (const json& each : rows) {
-            if (each["name"] == "Arrival at 20 m") row = each;
+            if (each["name"] == "Arrival at 40 m") row = each;
         }
         return row.is_object() && row["computed"].is_number();
     }));
@@ -65,7 +66,7 @@ TEST_F(TablesTest, the_archive_of_the_scene_has_them_and_loads) {
     ASSERT_EQ(answer.status, 200) << answer.body;
     const auto archive = scene_.folder() / "again.zip";
     std::ofstream(archive, std::ios::binary) << answer.body;
-    const auto unpacked = scene::unpack_bundle(archive, scene_.folder() / "again");
+    const auto unpacked = scene::unpack_bundle(archive, scene_.folder() / "again", {}, foreign_reader());
     ASSERT_TRUE(unpacked) << unpacked.error().message;
     const auto again = scene::load_scene(unpacked->scene);
     ASSERT_TRUE(again) << again.error().message;
@@ -83,7 +84,7 @@ TEST_F(TablesTest, a_calibration_fits_those_of_scenario_A) {
         now = as_viewer().get("/api/calibration").json()["observations"];
         return now.size() == before.size() + 1;
     }));
-    EXPECT_EQ(now.back()["name"], "Arrival at 20 m");
+    EXPECT_EQ(now.back()["name"], "Arrival at 40 m");
     EXPECT_EQ(now.back()["observed"], 3);
 }
 
@@ -102,7 +103,8 @@ TEST_F(AlertsTest, a_trigger_that_is_added_starts_a_run_and_one_that_is_removed_
     ASSERT_EQ(started.status, 200) << started.body;
     EXPECT_EQ(started.json()["scenario"], "B");
     ASSERT_TRUE(eventually([&] {
-        for (const json& raised : alerts()["alarms"]) {
+        const json now = alerts();
+        for (const json& raised : now["alarms"]) {
             if (raised["alarm"] == "coming" && raised["scenario"] == "B") return true;
         }
         return false;
