@@ -25,6 +25,7 @@ namespace {
 
 using std::chrono::seconds;
 
+constexpr const char* another_scene = "another scene has been opened; reload the page";
 constexpr std::size_t slowest_reader = 16 * 1024;  // bytes per second
 constexpr seconds linger_time{2};
 const std::vector<std::string> websocket_keys = {"token", "name", "person"};
@@ -52,6 +53,10 @@ class HttpConnection : public std::enable_shared_from_this<HttpConnection> {
     /// The answer to a request that is refused by its header; empty: continue.
     std::optional<Response> refusal();
     void handle();
+    /// Another scene may be put in the place of the one that was asked while the body comes.
+    [[nodiscard]] bool asked_is_closed() const { return asked_ && asked_ != context_.open; }
+    /// Lets go of an intake, and does not read the rest of the body.
+    void end_intake(Response response);
     /// For answers that may come from another thread, and after the client has gone.
     Respond respond_later();
     void upgrade();
@@ -240,8 +245,8 @@ void HttpConnection::handle() {
         upgrade();
     } else if (route_ == nullptr) {
         give_file();
-    } else if (asked_ && asked_ != context_.open) {
-        respond(error_response(409, "another scene has been opened; reload the page"));  // while the body came
+    } else if (asked_is_closed()) {
+        respond(error_response(409, another_scene));
     } else {
         stream_.expires_never();
         request_.body = std::move(parser_->get().body());
@@ -261,7 +266,14 @@ Respond HttpConnection::respond_later() {
     };
 }
 
+void HttpConnection::end_intake(Response response) {
+    intake_ = nullptr;
+    close_ = true;
+    respond(std::move(response));
+}
+
 void HttpConnection::begin_intake() {
+    if (asked_is_closed()) return end_intake(error_response(409, another_scene));
     close_ = !parser_->get().keep_alive();
     pieces_.emplace(std::move(*parser_));
     pieces_->body_limit(body_limit());
@@ -287,6 +299,7 @@ void HttpConnection::on_piece(beast::error_code error) {
         return;
     }
     stream_.expires_never();
+    if (asked_is_closed()) return end_intake(error_response(409, another_scene));
     const std::size_t count = piece_.size() - pieces_->get().body().size;
     const auto held = std::make_shared<std::shared_ptr<HttpConnection>>(shared_from_this());
     intake_->take(piece_.substr(0, count), [held](std::optional<Response> refused) {
@@ -294,9 +307,9 @@ void HttpConnection::on_piece(beast::error_code error) {
         const auto executor = self->stream_.get_executor();
         asio::post(executor, [self = std::move(self), refused = std::move(refused)]() mutable {
             if (refused) {
-                self->intake_ = nullptr;
-                self->close_ = true;  // the rest of the body is not read
-                self->respond(std::move(*refused));
+                self->end_intake(std::move(*refused));
+            } else if (self->asked_is_closed()) {
+                self->end_intake(error_response(409, another_scene));
             } else if (self->pieces_->is_done()) {
                 self->intake_->finish(self->respond_later());
             } else {

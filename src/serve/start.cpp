@@ -201,7 +201,7 @@ void Start::work(const Wanted& wanted) {
                                       std::move(loaded->overlays));
         if (!made) return end(made.error().message);
         if (stop_) {
-            (*made)->close();
+            OpenSession::retire(host_.thread, std::move(*made));
             return end("cancelled");
         }
         // A list of recent scenes that cannot be written is no reason not to open one.
@@ -229,10 +229,7 @@ void Start::put_in_place() {
     }
     if (!former) return;
     former->session.dismiss_all();
-    opener_->post([post = host_.thread.post, former] {
-        former->close();
-        post([former] {});  // what it posted before comes first
-    });
+    opener_->post([thread = host_.thread, former] { OpenSession::retire(thread, former); });
 }
 
 Result<Start::Loaded> Start::load(const Wanted& wanted) {
