@@ -14,6 +14,7 @@
 
 #include "core/hash.hpp"
 #include "core/try.hpp"
+#include "geo/json_text.hpp"
 #include "scene/builtin.hpp"
 #include "scene/scene.hpp"
 #include "session/json_text.hpp"
@@ -35,7 +36,7 @@ std::string text_or_none(const json& object, const char* key) {
 json read_json(const fs::path& file, std::uintmax_t longest) {
     const auto text = read_whole(file, longest);
     if (!text) return {};
-    auto parsed = session::parse_json(*text);
+    auto parsed = session::parse_json(*text, Library::most_session_values);
     return parsed ? std::move(*parsed) : json();
 }
 
@@ -203,6 +204,13 @@ Status Library::remove_scene(const std::string& id) const {
 Result<std::string> Library::save_session(const std::string& name, const std::string& text) const {
     const std::string id = file_name_of(name);
     if (id.empty()) return Error{"a session needs a name with letters or digits"};
+    if (text.size() > longest_session || geo::json_values(text) > most_session_values) {
+        return Error{
+            fmt::format("the session is too long to be opened again: {:.1f} MB with {} values; at most "
+                        "{:.0f} MB with {} are read",
+                        static_cast<double>(text.size()) / 1e6, geo::json_values(text),
+                        static_cast<double>(longest_session) / 1e6, most_session_values)};
+    }
     TALUS_TRY(write_whole(folder_ / "sessions" / (id + ".json"), text));
     return id;
 }

@@ -30,6 +30,7 @@ struct SavedSession {
 class Library {
   public:
     static constexpr std::uintmax_t longest_session = 64'000'000;  ///< bytes of a saved session
+    static constexpr std::size_t most_session_values = 2'000'000;  ///< of its geo::json_values()
 
     explicit Library(std::filesystem::path folder) : folder_(std::move(folder)) {}
 
