@@ -78,6 +78,18 @@ std::string file_name_of(const std::string& name) {
     return made;
 }
 
+std::string with_name(std::string sentence, const fs::path& path, const std::string& name) {
+    const std::string wanted = path.string();
+    for (std::size_t at = 0; (at = sentence.find(wanted, at)) != std::string::npos; at += name.size()) {
+        sentence.replace(at, wanted.size(), name);
+    }
+    return sentence;
+}
+
+std::string without_folder(const std::string& sentence, const fs::path& folder) {
+    return with_name(with_name(sentence, folder / "", ""), folder, "its folder");
+}
+
 Status write_whole(const fs::path& file, const std::string& text) {
     std::error_code error;
     fs::create_directories(file.parent_path(), error);

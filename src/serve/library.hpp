@@ -60,6 +60,11 @@ class Library {
 /// As a name of a file or folder: lower-case letters, digits and hyphens; empty where nothing of it is left.
 [[nodiscard]] std::string file_name_of(const std::string& name);
 
+/// A sentence with a name in place of a path: that of an upload, by which its user knows it.
+[[nodiscard]] std::string with_name(std::string sentence, const std::filesystem::path& path, const std::string& name);
+/// The same for all files of a folder, by their own names.
+[[nodiscard]] std::string without_folder(const std::string& sentence, const std::filesystem::path& folder);
+
 /// `2026-11-24T03:40:00Z`
 [[nodiscard]] std::string utc_now();
 
