@@ -301,7 +301,7 @@ void Overlays::change(const Request& request, const Respond& respond) {
             TALUS_ASSIGN(const auto opacity, twin::read_number(*wanted, "opacity", {0, 1, true, true}, ""));
             TALUS_ASSIGN(const auto colour, twin::read_text(*wanted, "colour", longest_layer_name));
             if (name) made.name = tidy_name(*name, longest_layer_name);
-            if (made.name.empty()) {
+            if (name && made.name.empty()) {
                 return Error{fmt::format("name = {}: must have characters that can be seen", twin::shown(*name))};
             }
             made.opacity = opacity.value_or(made.opacity);
