@@ -57,6 +57,19 @@ class HttpConnection : public std::enable_shared_from_this<HttpConnection> {
     [[nodiscard]] bool asked_is_closed() const { return asked_ && asked_ != context_.open; }
     /// Lets go of an intake, and does not read the rest of the body.
     void end_intake(Response response);
+    /// What another thread has until it answers. That thread releases the connection, so that it always ends on this
+    /// one; so it does if the answer never comes, because a session was closed with requests that waited.
+    struct Held {
+        explicit Held(std::shared_ptr<HttpConnection> waiting) : connection(std::move(waiting)) {}
+        ~Held() {
+            if (!connection) return;
+            const auto executor = connection->stream_.get_executor();
+            asio::post(executor, [ended = std::move(connection)] {});
+        }
+        Held(const Held&) = delete;
+        Held& operator=(const Held&) = delete;
+        std::shared_ptr<HttpConnection> connection;
+    };
     /// For answers that may come from another thread, and after the client has gone.
     Respond respond_later();
     void upgrade();
@@ -255,10 +268,8 @@ void HttpConnection::handle() {
 }
 
 Respond HttpConnection::respond_later() {
-    // The thread that answers releases the connection, so that it always ends on this one.
-    const auto held = std::make_shared<std::shared_ptr<HttpConnection>>(shared_from_this());
-    return [held](Response response) {
-        std::shared_ptr<HttpConnection> self = std::move(*held);
+    return [held = std::make_shared<Held>(shared_from_this())](Response response) {
+        std::shared_ptr<HttpConnection> self = std::move(held->connection);
         const auto executor = self->stream_.get_executor();
         asio::post(executor, [self = std::move(self), response = std::move(response)]() mutable {
             self->respond(std::move(response));
@@ -301,9 +312,9 @@ void HttpConnection::on_piece(beast::error_code error) {
     stream_.expires_never();
     if (asked_is_closed()) return end_intake(error_response(409, another_scene));
     const std::size_t count = piece_.size() - pieces_->get().body().size;
-    const auto held = std::make_shared<std::shared_ptr<HttpConnection>>(shared_from_this());
+    const auto held = std::make_shared<Held>(shared_from_this());
     intake_->take(piece_.substr(0, count), [held](std::optional<Response> refused) {
-        std::shared_ptr<HttpConnection> self = std::move(*held);
+        std::shared_ptr<HttpConnection> self = std::move(held->connection);
         const auto executor = self->stream_.get_executor();
         asio::post(executor, [self = std::move(self), refused = std::move(refused)]() mutable {
             if (refused) {
