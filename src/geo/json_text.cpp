@@ -10,9 +10,15 @@
 namespace talus::geo {
 namespace {
 
-/// Maximum number of open brackets.
-int nesting(std::string_view text) {
-    int depth = 0, deepest = 0;
+/// What a text would take to parse.
+struct Size {
+    int deepest = 0;         // open brackets
+    std::size_t values = 0;  // commas and opening brackets
+};
+
+Size size_of(std::string_view text) {
+    Size size;
+    int depth = 0;
     bool quoted = false;
     for (std::size_t i = 0; i < text.size(); ++i) {
         const char c = text[i];
@@ -22,20 +28,31 @@ int nesting(std::string_view text) {
         } else if (c == '"') {
             quoted = true;
         } else if (c == '[' || c == '{') {
-            deepest = std::max(deepest, ++depth);
+            size.deepest = std::max(size.deepest, ++depth);
+            ++size.values;
+        } else if (c == ',') {
+            ++size.values;
         } else if (c == ']' || c == '}') {
             --depth;
         }
     }
-    return deepest;
+    return size;
 }
 
 }  // namespace
 
-Result<nlohmann::json> parse_json(std::string_view text) {
+std::size_t json_values(std::string_view text) {
+    return size_of(text).values;
+}
+
+Result<nlohmann::json> parse_json(std::string_view text, std::size_t most_values) {
     using Event = nlohmann::json::parse_event_t;
-    if (const int depth = nesting(text); depth > deepest_json) {
-        return Error{fmt::format("is nested {} levels deep; at most {} are read", depth, deepest_json)};
+    const Size size = size_of(text);
+    if (size.deepest > deepest_json) {
+        return Error{fmt::format("is nested {} levels deep; at most {} are read", size.deepest, deepest_json)};
+    }
+    if (size.values > most_values) {
+        return Error{fmt::format("holds {} values; at most {} are read", size.values, most_values)};
     }
     std::vector<std::set<std::string>> open;  // the keys of each object that is being read
     std::string twice;

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <cstddef>
+#include <limits>
 #include <string_view>
 
 #include <nlohmann/json.hpp>
@@ -11,8 +13,14 @@ namespace talus::geo {
 /// Nested brackets, at most: deeper JSON is refused before it is parsed.
 inline constexpr int deepest_json = 64;
 
+/// About how many values a text holds: its commas and opening brackets. Parsed, one of three bytes ("{},") takes
+/// a hundred.
+[[nodiscard]] std::size_t json_values(std::string_view text);
+
 /// JSON from a file or a request, in which no object has a key twice: otherwise the last one would win in silence.
-/// Errors are the end of a sentence: "is not valid JSON, at byte 12".
-[[nodiscard]] Result<nlohmann::json> parse_json(std::string_view text);
+/// `most_values`: of json_values(), for long texts that may come from anybody. Errors are the end of a sentence:
+/// "is not valid JSON, at byte 12".
+[[nodiscard]] Result<nlohmann::json> parse_json(std::string_view text,
+                                                std::size_t most_values = std::numeric_limits<std::size_t>::max());
 
 }  // namespace talus::geo

@@ -223,7 +223,8 @@ namespace {
 std::array<GByte, 3> ramp_at(double share) {
     constexpr std::array<std::array<double, 3>, 5> stops{
         {{68, 1, 84}, {59, 82, 139}, {33, 145, 140}, {94, 201, 98}, {253, 231, 37}}};
-    const double at = std::clamp(share, 0.0, 1.0) * (stops.size() - 1);
+    // Values near the ends of what a number can hold have no share of their range.
+    const double at = std::isfinite(share) ? std::clamp(share, 0.0, 1.0) * (stops.size() - 1) : 0;
     const auto k = std::min<std::size_t>(static_cast<std::size_t>(at), stops.size() - 2);
     std::array<GByte, 3> colour{};
     for (std::size_t c = 0; c < colour.size(); ++c) {

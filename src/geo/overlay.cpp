@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
 #include <map>
 #include <memory>
 #include <optional>
@@ -297,6 +298,10 @@ class OverlayReader {
     std::size_t points_ = 0;
 };
 
+bool can_be_seen(const json& value) {
+    return !value.is_string() || visible(value.get_ref<const std::string&>()) == value.get_ref<const std::string&>();
+}
+
 Status check_feature(const json& feature, std::size_t styles, std::size_t& points) {
     if (!feature.is_object() || feature.size() != 5) return Error{"a feature has other keys"};
     const auto text = [&](const char* key) { return feature.contains(key) && feature[key].is_string(); };
@@ -305,14 +310,17 @@ Status check_feature(const json& feature, std::size_t styles, std::size_t& point
     if (kind != "point" && kind != "line" && kind != "area") return Error{"a feature is no point, line or area"};
     const json parts = feature.value("parts", json()), attributes = feature.value("attributes", json()),
                style = feature.value("style", json());
-    if (!style.is_number_integer() || style.get<std::int64_t>() < -1 ||
-        style.get<std::int64_t>() >= static_cast<std::int64_t>(styles)) {
+    const bool none = style.is_number_integer() && style == -1;
+    if (!none && (!style.is_number_unsigned() || style.get<std::uint64_t>() >= styles)) {
         return Error{"a feature has no style"};
     }
     if (!attributes.is_object() || attributes.size() > most_attributes) return Error{"a feature has no attributes"};
-    for (const json& value : attributes) {
+    bool seen = can_be_seen(feature["name"]);
+    for (const auto& [key, value] : attributes.items()) {
         if (!value.is_string() && !value.is_number()) return Error{"an attribute is no text and no number"};
+        seen = seen && can_be_seen(key) && can_be_seen(value);
     }
+    if (!seen) return Error{"a name or an attribute has characters that cannot be seen, or turn the writing"};
     if (!parts.is_array() || parts.empty()) return Error{"a feature has no parts"};
     for (const json& part : parts) {
         if (!part.is_array() || part.empty() || part.size() % 2 != 0) return Error{"a part is no list of places"};
@@ -328,17 +336,26 @@ Status check_feature(const json& feature, std::size_t styles, std::size_t& point
 
 Result<std::vector<VectorOverlay>> read_vector_overlays(const std::string& file,
                                                         const std::vector<LayerSymbols>& symbols,
-                                                        const OverlayGround& ground, const OverlayLimits& limits) {
+                                                        const OverlayGround& ground, const OverlayLimits& limits,
+                                                        const OverlayFileLimits& together) {
     TALUS_ASSIGN(const auto data, open_dataset(file, GDAL_OF_VECTOR, "vector file"));
     std::vector<VectorOverlay> found;
-    std::size_t outside = 0;
+    std::size_t outside = 0, bytes = 0;
     for (int k = 0; k < data->GetLayerCount(); ++k) {
         OGRLayer& layer = *data->GetLayer(k);
         const auto at = static_cast<std::size_t>(k);
         auto overlay = OverlayReader(layer, at < symbols.size() ? symbols[at] : LayerSymbols(), ground, limits).read();
         if (!overlay) return Error{fmt::format("layer \"{}\" {}", visible(layer.GetName()), overlay.error().message)};
         outside += overlay->outside;
-        if (overlay->features > 0) found.push_back(std::move(*overlay));
+        if (overlay->features == 0) continue;
+        bytes += overlay->json.size();
+        found.push_back(std::move(*overlay));
+        if (found.size() > together.layers || bytes > together.bytes) {
+            return Error{
+                fmt::format("has more than {} layers, or more than {:.0f} MB of them, on the terrain; leave "
+                            "some out",
+                            together.layers, static_cast<double>(together.bytes) / 1e6)};
+        }
     }
     if (!found.empty()) return Result<std::vector<VectorOverlay>>(std::move(found));
     if (outside == 0) return Error{"has no features"};

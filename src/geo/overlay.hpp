@@ -19,6 +19,11 @@ struct OverlayLimits {
     int pixels = 3072;  ///< of the longer edge of a picture
 };
 
+/// Of the layers of one file together.
+struct OverlayFileLimits {
+    std::size_t layers = 20, bytes = 24'000'000;
+};
+
 /// Where overlays lie.
 struct OverlayGround {
     Crs crs;
@@ -42,7 +47,8 @@ struct VectorOverlay {
 [[nodiscard]] Result<std::vector<VectorOverlay>> read_vector_overlays(const std::string& file,
                                                                       const std::vector<LayerSymbols>& symbols,
                                                                       const OverlayGround& ground,
-                                                                      const OverlayLimits& limits);
+                                                                      const OverlayLimits& limits,
+                                                                      const OverlayFileLimits& together = {});
 
 /// Whether a text is the `json` of a VectorOverlay within the limits: a saved session may come from anybody. Errors say
 /// what is wrong.

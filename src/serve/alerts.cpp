@@ -38,10 +38,10 @@ Alerts::Alerts(Session& session, std::shared_ptr<const scene::Scene> scene, Aler
     }
     // A broker is for scenes whose file has something for it: nobody in the page makes the server connect to it.
     if (scene_->spec.triggers.empty() && scene_->spec.alarms.empty()) settings_.mqtt.reset();
+    session_.on_alerts([this](int scenario, const RunAlerts& alerts) { follow(scenario, alerts); });
 }
 
 Status Alerts::open() {
-    session_.on_alerts([this](int scenario, const RunAlerts& alerts) { follow(scenario, alerts); });
     if (settings_.mqtt) mqtt_state_ = "connecting";
     tell();  // the listener's messages come on another thread
     if (settings_.mqtt) {

@@ -1,3 +1,8 @@
+#include <memory>
+#include <string>
+#include <string_view>
+#include <utility>
+
 #include <fmt/format.h>
 
 #include "serve/api.hpp"
@@ -10,6 +15,7 @@
 namespace talus::serve {
 namespace {
 
+using nlohmann::json;
 using Handle = void (*)(Start&, const Request&, const Respond&);
 
 constexpr const char* one_scene = "this server shows one scene; talus start has a start page";
@@ -57,6 +63,30 @@ void add_drafts(Router& router, Start* start) {
     }
     router.add(std::move(upload));
 }
+
+/// Those who are sent the same session at a time share one copy of it. For the loop's thread.
+class SentSession {
+  public:
+    Bytes share(std::string text, const std::string& saved_at) {
+        // It may differ in the time alone, which is as long in each; that of the first is as good.
+        const std::size_t at = text.find(fmt::format("\"saved_at\":\"{}\"", saved_at));
+        if (Bytes sent = sent_.lock(); sent && at != std::string::npos && saved_at.size() == saved_at_.size()) {
+            const std::size_t begin = at + key_size;
+            text.replace(begin, saved_at_.size(), saved_at_);
+            if (text == *sent) return sent;
+            text.replace(begin, saved_at.size(), saved_at);
+        }
+        auto bytes = std::make_shared<const std::string>(std::move(text));
+        sent_ = bytes;
+        saved_at_ = saved_at;
+        return bytes;
+    }
+
+  private:
+    static constexpr std::size_t key_size = std::string_view("\"saved_at\":\"").size();
+    std::weak_ptr<const std::string> sent_;
+    std::string saved_at_;
+};
 
 /// Ensembles, calibrations and validations.
 void add_jobs(Router& router, Start* start) {
@@ -147,15 +177,17 @@ Router make_start_api(Start* start) {
 }
 
 void add_session_file_route(Router& router, Session& session, const Overlays& overlays) {
-    router.add(
-        {"GET", "/api/session/file", Role::viewer, [&session, &overlays](const Request&, const Respond& respond) {
-             const std::string title = session.scene()->spec.scene.title;
-             session.loop().post([respond, title, laid = overlays.saved()](Scenarios& all) {
-                 Response response = json_response(200, write_session(all, title, title, laid));
-                 response.file_name = "session.json";
-                 respond(response);
-             });
-         }});
+    router.add({"GET", "/api/session/file", Role::viewer,
+                [&session, &overlays, last = std::make_shared<SentSession>()](const Request&, const Respond& respond) {
+                    const std::string title = session.scene()->spec.scene.title;
+                    session.loop().post([last, respond, title, laid = overlays.saved()](Scenarios& all) {
+                        const json file = write_session(all, title, title, laid);
+                        Response response;
+                        response.body = last->share(to_text(file), file["saved_at"]);
+                        response.file_name = "session.json";
+                        respond(response);
+                    });
+                }});
 }
 
 }  // namespace talus::serve

@@ -132,15 +132,16 @@ void Calibrations::start(const json& wanted, const std::string& by, const Respon
         return;
     }
     const std::lock_guard lock(mutex_);
-    if (!status_["why_not"].is_null() || closed_) {
-        respond(error_response(409, closed_ ? "the program ends" : status_["why_not"].get<std::string>()));
-        return;
-    }
-    if (busy_) {
-        respond(error_response(409, "a calibration runs; cancel it or wait for its end"));
+    if (busy_ || closed_) {
+        respond(
+            error_response(409, closed_ ? "the program ends" : "a calibration runs; cancel it or wait for its end"));
         return;
     }
     take_observations();
+    if (!status_["why_not"].is_null()) {
+        respond(error_response(409, status_["why_not"].get<std::string>()));
+        return;
+    }
     busy_ = true;
     stop_ = false;
     worker_->post([this, plan = std::move(*plan), by, respond] { work(plan, by, respond); });
@@ -320,6 +321,7 @@ void Calibrations::end(const Ending& ending) {
     status_["phase"] = nullptr;
     status_["wall_remaining_s"] = nullptr;
     busy_ = false;
+    if (!closed_) take_observations();  // what was followed meanwhile
     tell_now();
 }
 

@@ -108,8 +108,11 @@ std::uint64_t Draft::bytes_left() const {
 
 Result<fs::path> unpack_upload(const std::string& name, const fs::path& upload, const fs::path& to,
                                const geo::ZipLimits& limits) {
+    const auto named = [&](const Status& status) {
+        return status ? status : Status(Error{with_name(status.error().message, upload, name)});
+    };
     if (has_ending(name, ".zip")) {
-        TALUS_TRY(geo::unpack_zip(upload, to, limits));
+        TALUS_TRY(named(geo::unpack_zip(upload, to, limits)));
         return only_file(name, to);
     }
     const bool packed = has_ending(name, ".gz");
@@ -126,7 +129,7 @@ Result<fs::path> unpack_upload(const std::string& name, const fs::path& upload, 
     const fs::path file = to / upload_name_of(inner);
     fs::create_directories(to, error);
     if (!error && packed) {
-        TALUS_TRY(geo::unpack_gzip(upload, file, {limits.bytes, 1}));
+        TALUS_TRY(named(geo::unpack_gzip(upload, file, {limits.bytes, 1})));
     } else if (!error) {
         fs::rename(upload, file, error);
     }
@@ -139,8 +142,9 @@ Result<Draft::Upload> Draft::convert(std::string_view role, const std::string& n
     Upload made{name, {}, 0, geo::FileKind::other};
     const std::uint64_t most = bytes_left();
     if (role == "bundle") {
-        TALUS_ASSIGN(auto unpacked, scene::unpack_bundle(upload, to, {most, limits_.files}, reader));
-        made.file = std::move(unpacked.scene);
+        auto unpacked = scene::unpack_bundle(upload, to, {most, limits_.files}, reader);
+        if (!unpacked) return Error{with_name(unpacked.error().message, upload, name)};
+        made.file = std::move(unpacked->scene);
     } else {
         const fs::path foreign = folder_ / "foreign";
         TALUS_ASSIGN(const fs::path file, unpack_upload(name, upload, foreign, {most, limits_.files}));

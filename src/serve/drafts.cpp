@@ -303,7 +303,7 @@ void Drafts::make(const Request& request, const Respond& respond) {
 void Drafts::pack(const fs::path& scene, bool builtin, const std::string& name, const Respond& respond) {
     worker_->post([this, scene, builtin, name, respond] {
         const fs::path archive = temporary_ / "scene.zip", unpacked = temporary_ / "packed";
-        const auto bytes = [&]() -> Result<std::string> {
+        auto bytes = [&]() -> Result<std::string> {
             fs::path file = scene;
             if (builtin) {
                 TALUS_ASSIGN(file, scene::unpack_builtin_scene(unpacked));
@@ -317,7 +317,7 @@ void Drafts::pack(const fs::path& scene, bool builtin, const std::string& name, 
         if (!bytes) return respond(error_response(409, bytes.error().message));
         Response response;
         response.type = "application/zip";
-        response.body = std::make_shared<const std::string>(*bytes);
+        response.body = std::make_shared<const std::string>(std::move(*bytes));
         const std::string plain = file_name_of(name);
         response.file_name = (plain.empty() ? "scene" : plain) + ".zip";
         respond(response);

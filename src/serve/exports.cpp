@@ -1,7 +1,6 @@
 #include "serve/exports.hpp"
 
 #include <algorithm>
-#include <fstream>
 #include <iterator>
 #include <system_error>
 #include <vector>
@@ -13,6 +12,7 @@
 #include "products/text_file.hpp"
 #include "scene/bundle.hpp"
 #include "serve/api.hpp"
+#include "serve/library.hpp"
 #include "session/json_text.hpp"
 
 namespace talus::serve {
@@ -104,15 +104,17 @@ std::vector<const ExportFile*> files_of(const twin::Scenario& run, const run::Sc
     return files;
 }
 
-Response read_file(const fs::path& path, const ExportFile& file) {
-    std::ifstream in(path, std::ios::binary);
-    auto bytes = std::make_shared<std::string>(std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>());
-    if (!in) return error_response(500, fmt::format("{} cannot be read back", file.name));
+Response answer_with(Bytes bytes, const ExportFile& file) {
     Response response;
     response.type = file.type;
     response.body = std::move(bytes);
     response.file_name = file.name;
     return response;
+}
+
+Response read_file(const fs::path& path, const ExportFile& file, SentFiles& files) {
+    auto bytes = files.read(path);
+    return bytes ? answer_with(std::move(*bytes), file) : error_response(500, bytes.error().message);
 }
 
 }  // namespace
@@ -211,28 +213,35 @@ void Exports::file(const std::string& scenario, const std::string& name, const R
             std::swap(taken, fresh);
             writer_->post([former = std::move(fresh)] {});  // this removes its files
         }
-        writer_->post([taken, wanted, respond] {
+        writer_->post([this, taken, wanted, respond] {
             const Status written = taken->write();
-            respond(written ? read_file(taken->folder / wanted->name, *wanted)
-                            : error_response(500, written.error().message));
+            respond(written ? read_file(taken->folder / wanted->name, *wanted, sent_)
+                            : error_response(500, without_folder(written.error().message, taken->folder)));
         });
     });
 }
 
 void Exports::scene_archive(const twin::Scenario& scenario, const Respond& respond) {
     const fs::path folder = folder_ / fmt::format("scene{}", ++count_);
-    writer_->post([folder, source = source_, text = scenario.scene_text(), respond] {
-        const auto made = [&]() -> Status {
+    writer_->post([this, folder, source = source_, text = scenario.scene_text(), respond] {
+        const ExportFile& wanted = *find_file(scene_zip);
+        const auto made = [&]() -> Result<Response> {
             TALUS_ASSIGN(const std::string scene, text(source.file, source.overrides));
+            if (Bytes sent = archive_sent_.lock(); sent && scene == archived_)
+                return answer_with(std::move(sent), wanted);
             std::error_code error;
             fs::create_directories(folder, error);
             if (error) return Error{fmt::format("{}: {}", folder.string(), error.message())};
             TALUS_TRY(products::write_text_file(folder / "scene.toml", scene));
             TALUS_TRY(scene::write_bundle(folder / "scene.toml", folder / scene_zip));
-            return {};
+            Response response = read_file(folder / scene_zip, wanted, sent_);
+            if (response.status == 200) {
+                archive_sent_ = response.body;
+                archived_ = scene;
+            }
+            return response;
         }();
-        respond(made ? read_file(folder / scene_zip, *find_file(scene_zip))
-                     : error_response(500, made.error().message));
+        respond(made ? *made : error_response(500, without_folder(made.error().message, folder)));
         std::error_code ignored;
         fs::remove_all(folder, ignored);
     });

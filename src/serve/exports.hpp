@@ -3,9 +3,11 @@
 #include <array>
 #include <cstdint>
 #include <filesystem>
+#include <memory>
 #include <string>
 
 #include "run/variants.hpp"
+#include "serve/sent_files.hpp"
 #include "serve/session.hpp"
 #include "serve/worker.hpp"
 
@@ -41,6 +43,9 @@ class Exports {
     run::SceneSource source_;
     std::array<SnapshotPtr, Scenarios::max_count> taken_;  // the latest; used by the loop's thread only
     std::uint64_t count_ = 0;                              // of folders, for their names; likewise
+    SentFiles sent_;
+    std::weak_ptr<const std::string> archive_sent_;  // a scene.zip while it is being sent; used by the writer only
+    std::string archived_;                           // the scene file in it
     std::unique_ptr<Worker> writer_ = std::make_unique<Worker>("exports");
 };
 

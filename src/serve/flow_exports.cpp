@@ -2,8 +2,6 @@
 
 #include <algorithm>
 #include <exception>
-#include <fstream>
-#include <iterator>
 #include <sys/resource.h>
 #include <system_error>
 #include <utility>
@@ -13,6 +11,7 @@
 #include "core/try.hpp"
 #include "params/fields.hpp"
 #include "serve/api.hpp"
+#include "serve/library.hpp"
 #include "session/json_text.hpp"
 #include "twin/json_keys.hpp"
 
@@ -133,12 +132,7 @@ Response FlowExports::begin(const std::string& scenario, const std::shared_ptr<c
                                           job_.scenario, 100 * job_.share));
     }
     delete_all(job_.folder);
-    job_ = {State::running,
-            scenario,
-            "",
-            0,
-            files_of(wanted.formats),
-            folder_ / fmt::format("flow-{}-{}", fmt::ptr(this), ++count_)};
+    job_ = {State::running, scenario, "", 0, files_of(wanted.formats), folder_ / fmt::format("flow-{}", ++count_)};
     stop_ = false;
     writer_->post([this, flow, wanted, folder = job_.folder] { write(*flow, wanted, folder); });
     return json_response(200, describe_now());
@@ -157,7 +151,7 @@ void FlowExports::write(const twin::RecordedFlow& flow, const Wanted& wanted, co
         const Status written = failed ? Status(Error{fmt::format("{}: {}", folder.string(), failed.message())})
                                       : flow.write(wanted.formats, wanted.interval, folder, go_on);
         if (written) return end(State::done, "");
-        end(stop_ ? State::cancelled : State::failed, stop_ ? "" : written.error().message);
+        end(stop_ ? State::cancelled : State::failed, stop_ ? "" : without_folder(written.error().message, folder));
     } catch (const std::exception& error) {  // running out of memory here must not end the live run
         end(State::failed, fmt::format("The export ended unexpectedly: {}.", error.what()));
     }
@@ -216,14 +210,12 @@ void FlowExports::file(const std::string& name, const Respond& respond) const {
     if (path.empty()) {
         return respond(error_response(404, fmt::format("there is no file {} of the moving flow", tidy_name(name, 40))));
     }
-    session_.worker().post([path, name, respond] {
-        std::ifstream in(path, std::ios::binary);
-        auto bytes =
-            std::make_shared<std::string>(std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>());
-        if (!in) return respond(error_response(500, fmt::format("{} cannot be read back", name)));
+    session_.worker().post([files = sent_, path, name, respond] {
+        auto bytes = files->read(path);
+        if (!bytes) return respond(error_response(500, bytes.error().message));
         Response response;
         response.type = type_of(name);
-        response.body = std::move(bytes);
+        response.body = std::move(*bytes);
         response.file_name = name;
         respond(response);
     });

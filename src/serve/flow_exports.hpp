@@ -11,6 +11,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "serve/sent_files.hpp"
 #include "serve/session.hpp"
 #include "serve/worker.hpp"
 #include "twin/recorded_flow.hpp"
@@ -66,7 +67,8 @@ class FlowExports {
     std::filesystem::path folder_;
     mutable std::mutex mutex_;  // guards job_ and count_
     Job job_;
-    std::uint64_t count_ = 0;         // of folders, for their names
+    std::uint64_t count_ = 0;  // of folders, for their names
+    const std::shared_ptr<SentFiles> sent_ = std::make_shared<SentFiles>();
     std::atomic<bool> stop_ = false;  // ends the one that is being made
     std::unique_ptr<Worker> writer_ = std::make_unique<Worker>("flow export");
 };

@@ -25,6 +25,7 @@ namespace {
 
 using std::chrono::seconds;
 
+constexpr const char* another_scene = "another scene has been opened; reload the page";
 constexpr std::size_t slowest_reader = 16 * 1024;  // bytes per second
 constexpr seconds linger_time{2};
 const std::vector<std::string> websocket_keys = {"token", "name", "person"};
@@ -52,6 +53,23 @@ class HttpConnection : public std::enable_shared_from_this<HttpConnection> {
     /// The answer to a request that is refused by its header; empty: continue.
     std::optional<Response> refusal();
     void handle();
+    /// Another scene may be put in the place of the one that was asked while the body comes.
+    [[nodiscard]] bool asked_is_closed() const { return asked_ && asked_ != context_.open; }
+    /// Lets go of an intake, and does not read the rest of the body.
+    void end_intake(Response response);
+    /// What another thread has until it answers. That thread releases the connection, so that it always ends on this
+    /// one; so it does if the answer never comes, because a session was closed with requests that waited.
+    struct Held {
+        explicit Held(std::shared_ptr<HttpConnection> waiting) : connection(std::move(waiting)) {}
+        ~Held() {
+            if (!connection) return;
+            const auto executor = connection->stream_.get_executor();
+            asio::post(executor, [ended = std::move(connection)] {});
+        }
+        Held(const Held&) = delete;
+        Held& operator=(const Held&) = delete;
+        std::shared_ptr<HttpConnection> connection;
+    };
     /// For answers that may come from another thread, and after the client has gone.
     Respond respond_later();
     void upgrade();
@@ -240,8 +258,8 @@ void HttpConnection::handle() {
         upgrade();
     } else if (route_ == nullptr) {
         give_file();
-    } else if (asked_ && asked_ != context_.open) {
-        respond(error_response(409, "another scene has been opened; reload the page"));  // while the body came
+    } else if (asked_is_closed()) {
+        respond(error_response(409, another_scene));
     } else {
         stream_.expires_never();
         request_.body = std::move(parser_->get().body());
@@ -250,10 +268,8 @@ void HttpConnection::handle() {
 }
 
 Respond HttpConnection::respond_later() {
-    // The thread that answers releases the connection, so that it always ends on this one.
-    const auto held = std::make_shared<std::shared_ptr<HttpConnection>>(shared_from_this());
-    return [held](Response response) {
-        std::shared_ptr<HttpConnection> self = std::move(*held);
+    return [held = std::make_shared<Held>(shared_from_this())](Response response) {
+        std::shared_ptr<HttpConnection> self = std::move(held->connection);
         const auto executor = self->stream_.get_executor();
         asio::post(executor, [self = std::move(self), response = std::move(response)]() mutable {
             self->respond(std::move(response));
@@ -261,7 +277,14 @@ Respond HttpConnection::respond_later() {
     };
 }
 
+void HttpConnection::end_intake(Response response) {
+    intake_ = nullptr;
+    close_ = true;
+    respond(std::move(response));
+}
+
 void HttpConnection::begin_intake() {
+    if (asked_is_closed()) return end_intake(error_response(409, another_scene));
     close_ = !parser_->get().keep_alive();
     pieces_.emplace(std::move(*parser_));
     pieces_->body_limit(body_limit());
@@ -287,16 +310,17 @@ void HttpConnection::on_piece(beast::error_code error) {
         return;
     }
     stream_.expires_never();
+    if (asked_is_closed()) return end_intake(error_response(409, another_scene));
     const std::size_t count = piece_.size() - pieces_->get().body().size;
-    const auto held = std::make_shared<std::shared_ptr<HttpConnection>>(shared_from_this());
+    const auto held = std::make_shared<Held>(shared_from_this());
     intake_->take(piece_.substr(0, count), [held](std::optional<Response> refused) {
-        std::shared_ptr<HttpConnection> self = std::move(*held);
+        std::shared_ptr<HttpConnection> self = std::move(held->connection);
         const auto executor = self->stream_.get_executor();
         asio::post(executor, [self = std::move(self), refused = std::move(refused)]() mutable {
             if (refused) {
-                self->intake_ = nullptr;
-                self->close_ = true;  // the rest of the body is not read
-                self->respond(std::move(*refused));
+                self->end_intake(std::move(*refused));
+            } else if (self->asked_is_closed()) {
+                self->end_intake(error_response(409, another_scene));
             } else if (self->pieces_->is_done()) {
                 self->intake_->finish(self->respond_later());
             } else {

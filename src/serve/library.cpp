@@ -14,6 +14,7 @@
 
 #include "core/hash.hpp"
 #include "core/try.hpp"
+#include "geo/json_text.hpp"
 #include "scene/builtin.hpp"
 #include "scene/scene.hpp"
 #include "session/json_text.hpp"
@@ -35,7 +36,7 @@ std::string text_or_none(const json& object, const char* key) {
 json read_json(const fs::path& file, std::uintmax_t longest) {
     const auto text = read_whole(file, longest);
     if (!text) return {};
-    auto parsed = session::parse_json(*text);
+    auto parsed = session::parse_json(*text, Library::most_session_values);
     return parsed ? std::move(*parsed) : json();
 }
 
@@ -75,6 +76,18 @@ std::string file_name_of(const std::string& name) {
     if (made.size() > longest_file_name) made.resize(longest_file_name);
     while (!made.empty() && made.back() == '-') made.pop_back();
     return made;
+}
+
+std::string with_name(std::string sentence, const fs::path& path, const std::string& name) {
+    const std::string wanted = path.string();
+    for (std::size_t at = 0; (at = sentence.find(wanted, at)) != std::string::npos; at += name.size()) {
+        sentence.replace(at, wanted.size(), name);
+    }
+    return sentence;
+}
+
+std::string without_folder(const std::string& sentence, const fs::path& folder) {
+    return with_name(with_name(sentence, folder / "", ""), folder, "its folder");
 }
 
 Status write_whole(const fs::path& file, const std::string& text) {
@@ -203,6 +216,13 @@ Status Library::remove_scene(const std::string& id) const {
 Result<std::string> Library::save_session(const std::string& name, const std::string& text) const {
     const std::string id = file_name_of(name);
     if (id.empty()) return Error{"a session needs a name with letters or digits"};
+    if (text.size() > longest_session || geo::json_values(text) > most_session_values) {
+        return Error{
+            fmt::format("the session is too long to be opened again: {:.1f} MB with {} values; at most "
+                        "{:.0f} MB with {} are read",
+                        static_cast<double>(text.size()) / 1e6, geo::json_values(text),
+                        static_cast<double>(longest_session) / 1e6, most_session_values)};
+    }
     TALUS_TRY(write_whole(folder_ / "sessions" / (id + ".json"), text));
     return id;
 }

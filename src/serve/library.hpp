@@ -30,6 +30,7 @@ struct SavedSession {
 class Library {
   public:
     static constexpr std::uintmax_t longest_session = 64'000'000;  ///< bytes of a saved session
+    static constexpr std::size_t most_session_values = 2'000'000;  ///< of its geo::json_values()
 
     explicit Library(std::filesystem::path folder) : folder_(std::move(folder)) {}
 
@@ -58,6 +59,11 @@ class Library {
 
 /// As a name of a file or folder: lower-case letters, digits and hyphens; empty where nothing of it is left.
 [[nodiscard]] std::string file_name_of(const std::string& name);
+
+/// A sentence with a name in place of a path: that of an upload, by which its user knows it.
+[[nodiscard]] std::string with_name(std::string sentence, const std::filesystem::path& path, const std::string& name);
+/// The same for all files of a folder, by their own names.
+[[nodiscard]] std::string without_folder(const std::string& sentence, const std::filesystem::path& folder);
 
 /// `2026-11-24T03:40:00Z`
 [[nodiscard]] std::string utc_now();

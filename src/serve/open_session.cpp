@@ -18,16 +18,12 @@ OpenSession::OpenSession(Thread thread, std::shared_ptr<const scene::Scene> scen
       overlays(session, options.export_folder / "overlays", options.reader, options.tiles),
       flows(session, options.export_folder) {}
 
-Result<OpenSessionPtr> OpenSession::open(Thread thread, const std::shared_ptr<const scene::Scene>& scene,
+Result<OpenSessionPtr> OpenSession::open(const Thread& thread, const std::shared_ptr<const scene::Scene>& scene,
                                          const ServerOptions& options, std::vector<OpeningScenario> scenarios,
                                          std::vector<Overlay> laid) {
-    auto made = std::make_shared<OpenSession>(std::move(thread), scene, options);
+    auto made = std::make_shared<OpenSession>(thread, scene, options);
     TALUS_ASSIGN(made->ensembles, Ensembles::read(options.ensembles, *scene));
     const auto on_failure = options.on_failure ? options.on_failure : [](const std::string&) {};
-    made->session.on_first_setup([raw = made.get()](const nlohmann::json& setup) {
-        raw->alerts.follow_triggers(setup["triggers"]);
-        raw->calibrations.follow(setup["observations"]);
-    });
     TALUS_TRY(made->session.open(options.scenario, on_failure));
     made->session.calibration(made->calibrations.describe());
     made->router =
@@ -35,8 +31,19 @@ Result<OpenSessionPtr> OpenSession::open(Thread thread, const std::shared_ptr<co
     add_flow_routes(made->router, made->flows);
     made->overlays.open(std::move(laid));
     add_depth_averaged_routes(made->router, made->session, made->depth_averaged);
-    TALUS_TRY(made->alerts.open());
+    if (const Status opened = made->alerts.open(); !opened) {
+        retire(thread, std::move(made));
+        return opened.error();
+    }
     const auto shared = std::make_shared<std::vector<OpeningScenario>>(std::move(scenarios));
+    // On the server's thread, which may be another one: it follows setups from when all of this is open. The task after
+    // it sends the first one again.
+    made->session.post([raw = made.get()] {
+        raw->session.on_first_setup([raw](const nlohmann::json& setup) {
+            raw->alerts.follow_triggers(setup["triggers"]);
+            raw->calibrations.follow(setup["observations"]);
+        });
+    });
     made->session.loop().post([shared, raw = made.get(), run = options.run](Scenarios& all) {
         for (OpeningScenario& one : *shared) all.put(one.index, std::move(one.scenario), one.title);
         raw->session.setup(0, all.setup(0));
@@ -54,6 +61,11 @@ void OpenSession::close() {
     session.close();
     exports.close();
     flows.close();
+}
+
+void OpenSession::retire(const Thread& thread, OpenSessionPtr session) {
+    session->close();
+    thread.post([post = thread.post, session = std::move(session)] { post([session] {}); });
 }
 
 }  // namespace talus::serve

@@ -34,13 +34,16 @@ struct OpenSession {
 
     /// From any thread. `scenarios`: in place of one at time 0. Errors: the scene cannot be run, an ensemble cannot be
     /// shown on it.
-    [[nodiscard]] static Result<std::shared_ptr<OpenSession>> open(Thread thread,
+    [[nodiscard]] static Result<std::shared_ptr<OpenSession>> open(const Thread& thread,
                                                                    const std::shared_ptr<const scene::Scene>& scene,
                                                                    const ServerOptions& options,
                                                                    std::vector<OpeningScenario> scenarios = {},
                                                                    std::vector<Overlay> overlays = {});
     /// Ends the threads; requests that wait are not answered. Nobody may use the session any more.
     void close();
+    /// From any thread but the server's: closes a session that the server's thread may have tasks of, and lets it go
+    /// there, once those and what they have posted in turn are done.
+    static void retire(const Thread& thread, std::shared_ptr<OpenSession> session);
 
     Ensembles ensembles;
     Session session;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <exception>
 #include <fstream>
 #include <functional>
 #include <system_error>
@@ -39,6 +40,12 @@ std::string as_named(std::string message, const fs::path& folder, const std::str
     return message.starts_with(name + ":") ? message : name + ": " + message;
 }
 
+/// Never empty: a saved session must name its layers.
+std::string layer_name(const std::string& given) {
+    std::string name = tidy_name(given, longest_layer_name);
+    return name.empty() ? "layer" : name;
+}
+
 Result<std::vector<Overlay>> read_overlay_file(const std::string& name, const fs::path& file, const fs::path& folder,
                                                const geo::ForeignReader& reader, const geo::OverlayGround& ground,
                                                const OverlayQuota& quota) {
@@ -50,7 +57,7 @@ Result<std::vector<Overlay>> read_overlay_file(const std::string& name, const fs
         "GeoTIFF are";
     TALUS_ASSIGN(const geo::ForeignFile made, geo::convert_foreign(file, wanted, folder / "again", reader));
     std::vector<Overlay> overlays;
-    const std::string stem = tidy_name(fs::path(name).stem().string(), longest_layer_name);
+    const std::string stem = layer_name(fs::path(name).stem().string());
     if (made.kind == geo::FileKind::raster) {
         TALUS_ASSIGN(auto picture, geo::read_picture_overlay(made.file.string(), ground, quota.layer));
         Overlay overlay;
@@ -65,10 +72,11 @@ Result<std::vector<Overlay>> read_overlay_file(const std::string& name, const fs
         overlays.push_back(std::move(overlay));
         return Result<std::vector<Overlay>>(std::move(overlays));
     }
-    TALUS_ASSIGN(auto layers, geo::read_vector_overlays(made.file.string(), made.layers, ground, quota.layer));
+    TALUS_ASSIGN(auto layers, geo::read_vector_overlays(made.file.string(), made.layers, ground, quota.layer,
+                                                        {quota.count, quota.bytes}));
     for (geo::VectorOverlay& layer : layers) {
         Overlay overlay;
-        overlay.name = layers.size() == 1 ? stem : tidy_name(layer.name, longest_layer_name);
+        overlay.name = layers.size() == 1 ? stem : layer_name(layer.name);
         overlay.features = layer.features;
         overlay.outside = layer.outside;
         overlay.styled = layer.styled;
@@ -117,7 +125,15 @@ class Overlays::Taking : public Intake {
         // The connection may let go of this object before the file is read.
         overlays_.worker_->post([&overlays = overlays_, name = name_, by = by_, respond,
                                  folder = std::exchange(folder_, {}), closed = close_file()] {
-            auto read = closed ? overlays.read(name, folder) : Result<std::vector<Overlay>>(closed.error());
+            const auto read_all = [&]() -> Result<std::vector<Overlay>> {
+                try {
+                    TALUS_TRY(closed);
+                    return overlays.read(name, folder);
+                } catch (const std::exception& error) {  // running out of memory here must not end the live run
+                    return Error{fmt::format("{}: cannot be read: {}", name, error.what())};
+                }
+            };
+            auto read = read_all();
             std::error_code ignored;
             fs::remove_all(folder, ignored);
             if (!read) return respond(error_response(400, read.error().message));
@@ -285,6 +301,9 @@ void Overlays::change(const Request& request, const Respond& respond) {
             TALUS_ASSIGN(const auto opacity, twin::read_number(*wanted, "opacity", {0, 1, true, true}, ""));
             TALUS_ASSIGN(const auto colour, twin::read_text(*wanted, "colour", longest_layer_name));
             if (name) made.name = tidy_name(*name, longest_layer_name);
+            if (name && made.name.empty()) {
+                return Error{fmt::format("name = {}: must have characters that can be seen", twin::shown(*name))};
+            }
             made.opacity = opacity.value_or(made.opacity);
             if (colour) made.colour = geo::colour_of(*colour);
             if (made.colour.empty()) return Error{fmt::format("colour = {}: must be as #1f77b4", *colour)};

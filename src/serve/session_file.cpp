@@ -53,7 +53,7 @@ json write_session(Scenarios& all, const std::string& name, const std::string& t
 }
 
 Result<SessionFile> read_session(const std::string& text) {
-    TALUS_ASSIGN(const json written, parse_json(text));
+    TALUS_ASSIGN(const json written, parse_json(text, Library::most_session_values));
     if (!written.is_object() || !written.contains("talus_session")) {
         return Error{"talus_session: missing; this is no saved session"};
     }

@@ -201,7 +201,7 @@ void Start::work(const Wanted& wanted) {
                                       std::move(loaded->overlays));
         if (!made) return end(made.error().message);
         if (stop_) {
-            (*made)->close();
+            OpenSession::retire(host_.thread, std::move(*made));
             return end("cancelled");
         }
         // A list of recent scenes that cannot be written is no reason not to open one.
@@ -229,10 +229,7 @@ void Start::put_in_place() {
     }
     if (!former) return;
     former->session.dismiss_all();
-    opener_->post([post = host_.thread.post, former] {
-        former->close();
-        post([former] {});  // what it posted before comes first
-    });
+    opener_->post([thread = host_.thread, former] { OpenSession::retire(thread, former); });
 }
 
 Result<Start::Loaded> Start::load(const Wanted& wanted) {
@@ -304,8 +301,13 @@ void Start::forget(const std::string& id, const Respond& respond) {
     files_->post([this, id, respond] { respond(of(library_.forget(id), "taken out of the recent scenes")); });
 }
 
+/// A file of a session may be long: it is read beside the server's thread.
 void Start::save(const Request& request, const Respond& respond) {
-    auto wanted = parse_json(request.body);
+    files_->post([this, body = request.body, respond] { save_wanted(body, respond); });
+}
+
+void Start::save_wanted(const std::string& body, const Respond& respond) {
+    auto wanted = parse_json(body, Library::most_session_values);
     const Status keys = !wanted               ? Status(wanted.error())
                         : wanted->is_object() ? twin::check_keys(*wanted, {"name", "file"})
                                               : Status(Error{"the body is an object with name"});
@@ -316,27 +318,29 @@ void Start::save(const Request& request, const Respond& respond) {
     if (file_name_of(name).empty()) {
         return respond(error_response(400, "a session needs a name with letters or digits"));
     }
-    const auto keep = [this, name, respond](const json& session) {
-        files_->post([this, name, respond, text = to_text(session) + "\n"] {
-            const auto saved = library_.save_session(name, text);
-            respond(saved ? done(fmt::format("saved as \"{}\"", name), *saved)
-                          : error_response(500, saved.error().message));
-        });
-    };
-    if (wanted->contains("file")) {
-        json file = (*wanted)["file"];
-        if (const auto read = read_session(file.dump()); !read) {
-            return respond(error_response(400, read.error().message));
-        }
-        file["name"] = name;
-        return keep(file);
+    if (!wanted->contains("file")) {
+        return host_.thread.post([this, name, respond] { save_open(name, respond); });
     }
+    json file = std::move((*wanted)["file"]);
+    if (const auto read = read_session(file.dump()); !read) return respond(error_response(400, read.error().message));
+    file["name"] = name;
+    keep(name, to_text(file), respond);
+}
+
+void Start::save_open(const std::string& name, const Respond& respond) {
     const OpenSessionPtr open = host_.open();
     if (!open) return respond(error_response(409, "no scene is open; there is nothing to save"));
-    open->session.loop().post(
-        [keep, name, title = open->session.scene()->spec.scene.title, laid = open->overlays.saved()](Scenarios& all) {
-            keep(write_session(all, name, title, laid));
+    open->session.loop().post([this, name, respond, title = open->session.scene()->spec.scene.title,
+                               laid = open->overlays.saved()](Scenarios& all) {
+        files_->post([this, name, respond, text = to_text(write_session(all, name, title, laid))] {
+            keep(name, text, respond);
         });
+    });
+}
+
+void Start::keep(const std::string& name, const std::string& session, const Respond& respond) const {
+    const auto saved = library_.save_session(name, session + "\n");
+    respond(saved ? done(fmt::format("saved as \"{}\"", name), *saved) : error_response(500, saved.error().message));
 }
 
 void Start::remove_saved(const std::string& id, const Respond& respond) {

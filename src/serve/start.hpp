@@ -81,6 +81,11 @@ class Start {
     /// What one of the three names is.
     [[nodiscard]] Result<Wanted> find(const std::string& scene, const std::string& session,
                                       const std::string& ensemble) const;
+    /// On the thread of files: what save() is asked.
+    void save_wanted(const std::string& body, const Respond& respond);
+    void save_open(const std::string& name, const Respond& respond);
+    /// On the thread of files: the text of a session.
+    void keep(const std::string& name, const std::string& session, const Respond& respond) const;
     void begin(Wanted wanted, const Respond& respond);
     void work(const Wanted& wanted);
     [[nodiscard]] Result<Loaded> load(const Wanted& wanted);

@@ -12,8 +12,8 @@ std::string utf8(const nlohmann::json& content) {
 
 }  // namespace
 
-Result<nlohmann::json> parse_json(std::string_view text) {
-    Result<nlohmann::json> parsed = geo::parse_json(text);
+Result<nlohmann::json> parse_json(std::string_view text, std::size_t most_values) {
+    Result<nlohmann::json> parsed = geo::parse_json(text, most_values);
     if (!parsed) return Error{"the body " + parsed.error().message};
     return parsed;
 }

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <cstddef>
+#include <limits>
 #include <string>
 #include <string_view>
 
@@ -9,8 +11,10 @@
 
 namespace talus::session {
 
-/// Parses a received text. Errors: not JSON (with the place), nested too deeply, a key given twice, not UTF-8.
-[[nodiscard]] Result<nlohmann::json> parse_json(std::string_view text);
+/// Parses a received text. Errors: not JSON (with the place), nested too deeply, a key given twice, not UTF-8, more
+/// than `most_values` (geo::json_values).
+[[nodiscard]] Result<nlohmann::json> parse_json(std::string_view text,
+                                                std::size_t most_values = std::numeric_limits<std::size_t>::max());
 
 /// Always valid UTF-8; numbers that are not finite become null. Characters that a reader cannot see, or that change the
 /// direction of writing, are shown as escapes.

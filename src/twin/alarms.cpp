@@ -60,7 +60,8 @@ void AlarmWatch::watch(const Setup& setup) {
     std::vector<Rule> rules;
     for (const TableSetup& alarm : setup.alarms) {
         Rule* before = find_id(rules_, alarm.id);
-        if (before != nullptr && same_values(*before->body, *alarm.body)) {
+        // A rule that has been taken over already has no body any more.
+        if (before != nullptr && before->body && same_values(*before->body, *alarm.body)) {
             rules.push_back(std::move(*before));
             continue;
         }

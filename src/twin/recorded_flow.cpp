@@ -41,6 +41,10 @@ run::Frame as_of_run(const Frame& recorded, const GridGeometry& map, double thin
     return frame;
 }
 
+std::string quoted(const std::string& name) {
+    return json(name).dump(-1, ' ', true, json::error_handler_t::replace);
+}
+
 /// About how many bytes the formats take.
 struct Sizes {
     double drawn = 0, maps = 0;
@@ -150,16 +154,20 @@ json RecordedFlow::describe(double interval) const {
 
 Status RecordedFlow::check(const std::vector<std::string>& names, double interval) const {
     if (names.empty()) return Error{"formats = []; name at least one"};
+    if (names.size() > formats().size()) {
+        return Error{fmt::format("formats has {} names; there are {} formats", names.size(), formats().size())};
+    }
     const std::vector<FramePtr> frames = chosen(interval);
     for (const std::string& name : names) {
+        if (std::count(names.begin(), names.end(), name) > 1) {
+            return Error{fmt::format("formats = {} is there twice", quoted(name))};
+        }
         const auto format =
             std::find_if(formats().begin(), formats().end(), [&](const Format& one) { return one.name == name; });
         if (format == formats().end()) {
             std::vector<std::string_view> known;
             for (const Format& one : formats()) known.push_back(one.name);
-            return Error{fmt::format("formats = {}; each is one of {}",
-                                     json(name).dump(-1, ' ', true, json::error_handler_t::replace),
-                                     fmt::join(known, ", "))};
+            return Error{fmt::format("formats = {}; each is one of {}", quoted(name), fmt::join(known, ", "))};
         }
         if (const std::string why = why_none(*format, frames); !why.empty()) {
             return Error{fmt::format("there is no {}: {}", name, why)};

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <map>
+#include <memory>
 #include <optional>
 #include <string>
 #include <utility>
@@ -56,7 +58,9 @@ struct Scenario::Parts {
     NextNumbers first_next;
     std::vector<JournalEntry> entries;
     std::vector<ChangeOnTheWay> changes;  ///< those without which the run would be that of its setup from time 0
-    std::string fault_note;               ///< at fault, what the reason does not say
+    /// Where the zones from rasters lie, as told last: it takes long to find, and is told several times a second.
+    mutable std::map<std::shared_ptr<const scene::Zone>, nlohmann::json> zone_blocks;
+    std::string fault_note;  ///< at fault, what the reason does not say
 
     [[nodiscard]] const Setup& setup() const { return run->setup(); }
     /// Starts with a setup.

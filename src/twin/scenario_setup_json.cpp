@@ -1,5 +1,7 @@
 // The setup as docs/protocol.md has it.
 #include <algorithm>
+#include <map>
+#include <memory>
 #include <utility>
 
 #include "core/number_or_null.hpp"
@@ -18,7 +20,18 @@ using nlohmann::json;
 
 constexpr std::size_t longest_table = 200;  // rows that are still readable
 
-json zone_json(const ZoneSetup& zone, const GridGeometry& terrain) {
+using ZoneBlocks = std::map<std::shared_ptr<const scene::Zone>, json>;
+
+json blocks_json(const scene::Zone& zone, const GridGeometry& terrain) {
+    json blocks = json::array();
+    for (const Extent& block : blocks_of(zone, terrain)) {
+        blocks.push_back({block.x_min, block.y_min, block.width(), block.height()});
+    }
+    return blocks;
+}
+
+/// `known`: what was found before; `blocks`: what the present zones have.
+json zone_json(const ZoneSetup& zone, const GridGeometry& terrain, const ZoneBlocks& known, ZoneBlocks& blocks) {
     json entry = values_json(zone.body->spec);
     entry["id"] = zone.id;
     entry["name"] = zone.body->spec.name;
@@ -26,10 +39,8 @@ json zone_json(const ZoneSetup& zone, const GridGeometry& terrain) {
     entry["area_m2"] = zone.area;
     entry["from_scene"] = zone.scene_index >= 0;
     if (zone.body->spec.stem_density > 0 && zone.body->cells != nullptr) {
-        json& blocks = entry["blocks"] = json::array();
-        for (const Extent& block : blocks_of(*zone.body, terrain)) {
-            blocks.push_back({block.x_min, block.y_min, block.width(), block.height()});
-        }
+        const auto found = known.find(zone.body);
+        entry["blocks"] = blocks[zone.body] = found != known.end() ? found->second : blocks_json(*zone.body, terrain);
     }
     return entry;
 }
@@ -146,7 +157,9 @@ json Scenario::setup_json() const {
     for (const BuildingSetup& building : setup.buildings) buildings.push_back(building_json(building));
     json zones = json::array(), beds = json::array(), inflows = json::array();
     const GridGeometry& terrain = p.scene->terrain.elevation().geometry;
-    for (const ZoneSetup& zone : setup.zones) zones.push_back(zone_json(zone, terrain));
+    ZoneBlocks blocks;
+    for (const ZoneSetup& zone : setup.zones) zones.push_back(zone_json(zone, terrain, p.zone_blocks, blocks));
+    p.zone_blocks = std::move(blocks);
     for (const BedSetup& bed : setup.beds) {
         json entry = bed_json(bed);
         entry["in_force"] = in_force(bed, p.run->begun_with().beds);

@@ -63,6 +63,9 @@ class SetupReader {
     static Status read_parts(const json& file, const char* key, const char* number, double Part::*value,
                              std::vector<Part>& parts);
     static Result<std::string> read_name(const json& file);
+    /// Refuses what is no object, or has no id; an empty one is none.
+    static Status check_id(const json& file);
+    static bool is_from_scene(const json& file) { return file.value("from_scene", json(false)) == true; }
     static Status check_keys_and_id(const json& file, std::initializer_list<std::string_view> keys);
     /// Refuses keys other than the id and those of such an entry.
     template <class Spec>
@@ -156,14 +159,19 @@ Status SetupReader::read_parts(const json& file, const char* key, const char* nu
     return {};
 }
 
+Status SetupReader::check_id(const json& file) {
+    const bool given = file.is_object() && file.contains("id") && file["id"].is_string();
+    return given && file["id"] != "" ? Status() : Status(bad("id", file));
+}
+
 Status SetupReader::check_keys_and_id(const json& file, std::initializer_list<std::string_view> keys) {
-    if (!file.is_object() || !file.contains("id") || !file["id"].is_string()) return bad("id", file);
+    TALUS_TRY(check_id(file));
     return check_keys(file, keys);
 }
 
 template <class Spec>
 Status SetupReader::check_entry(const json& file, std::initializer_list<std::string_view> keys) {
-    if (!file.is_object() || !file.contains("id") || !file["id"].is_string()) return bad("id", file);
+    TALUS_TRY(check_id(file));
     return check_keys(file, live_keys(params::section_of<Spec>.first), keys);
 }
 
@@ -212,8 +220,7 @@ Result<BarrierSetup> SetupReader::read_barrier(const json& file) const {
     TALUS_TRY(read_values(values, barrier));
     TALUS_TRY(check_rules(barrier, scene_.spec.solver, 0));
     TALUS_ASSIGN(auto body, make_barrier(scene_.terrain, name, barrier));
-    return BarrierSetup{file["id"], std::make_shared<const terrain::Building>(std::move(body)),
-                        file.value("from_scene", false)};
+    return BarrierSetup{file["id"], std::make_shared<const terrain::Building>(std::move(body)), is_from_scene(file)};
 }
 
 Result<BuildingSetup> SetupReader::read_building(const json& file) const {
@@ -335,8 +342,9 @@ Result<NoteSetup> SetupReader::read_note(const json& file) const {
 Result<TableSetup> SetupReader::read_table(const json& file, TableKind kind) {
     TALUS_TRY(check_keys_and_id(file, {"id", "section", "name", "values", "from_scene"}));
     TALUS_ASSIGN(TableEntry entry, read_table_entry(file, kind));
+    TALUS_TRY(check_table_shape(entry));
     auto body = std::make_shared<const TableEntry>(std::move(entry));
-    return TableSetup{file["id"], std::move(body), file.value("from_scene", false)};
+    return TableSetup{file["id"], std::move(body), is_from_scene(file)};
 }
 
 }  // namespace

@@ -95,6 +95,20 @@ std::string without_place(const std::string& sentence, const std::string& sectio
     return at == std::string::npos ? sentence : sentence.substr(at + begin.size());
 }
 
+/// Required keys and rules, of an entry behind those of `spec`.
+Status check_behind(params::SceneSpec spec, const TableEntry& entry, double particle_spacing) {
+    const params::Section& section = *params::find_section(entry.section);
+    for (const params::Parameter& parameter : section.parameters) {
+        if (!parameter.required || entry.values.contains(parameter.key)) continue;
+        return Error{fmt::format("{}: missing; it must be {}", parameter.key, allowed_text(parameter))};
+    }
+    append_entry(spec, entry);
+    const std::size_t index = section.count(spec) - 1;
+    auto broken = wrong_choice(section, spec, index, false);
+    if (!broken) broken = broken_rule(section, spec, index, particle_spacing);
+    return broken ? Status(Error{broken->key + broken->text}) : Status();
+}
+
 /// What the reader checks against terrain, path and names.
 Status check_in_scene(const TableEntry& entry, TableKind kind, const Setup& setup, const scene::Scene& scene) {
     scene::Scene checked = scene;
@@ -194,20 +208,15 @@ Result<TableEntry> read_table_entry(const json& file, TableKind kind) {
     return entry;
 }
 
+Status check_table_shape(const TableEntry& entry) {
+    return check_behind({}, entry, 0);  // no rule of these sections is about the particles' spacing
+}
+
 Status check_table_entry(const TableEntry& entry, TableKind kind, const std::vector<TableEntry>& others,
                          const Setup& setup, const scene::Scene& scene, double particle_spacing) {
-    const params::Section& section = *params::find_section(entry.section);
-    for (const params::Parameter& parameter : section.parameters) {
-        if (!parameter.required || entry.values.contains(parameter.key)) continue;
-        return Error{fmt::format("{}: missing; it must be {}", parameter.key, allowed_text(parameter))};
-    }
     params::SceneSpec spec;
     put_entries(spec, kind, others);
-    append_entry(spec, entry);
-    const std::size_t index = section.count(spec) - 1;
-    auto broken = wrong_choice(section, spec, index, false);
-    if (!broken) broken = broken_rule(section, spec, index, particle_spacing);
-    if (broken) return Error{broken->key + broken->text};
+    TALUS_TRY(check_behind(std::move(spec), entry, particle_spacing));
     return check_in_scene(entry, kind, setup, scene);
 }
 

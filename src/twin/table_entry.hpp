@@ -48,6 +48,9 @@ void put_entries(params::SceneSpec& spec, TableKind kind, const std::vector<Tabl
 /// As a setup file has it: section and values. Errors: no section of that kind; as read_table_values.
 [[nodiscard]] Result<TableEntry> read_table_entry(const nlohmann::json& file, TableKind kind);
 
+/// What of check_table_entry() needs neither a scene nor other entries: required keys, and rules between keys.
+[[nodiscard]] Status check_table_shape(const TableEntry& entry);
+
 /// As the reader of a scene file: required keys, rules, places, names. `others`: the rest of that kind. Structures of
 /// an alarm are those of the setup; a trigger's release or inflow and a damaged building are of the scene file, from
 /// which their runs start.

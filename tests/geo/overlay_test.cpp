@@ -2,6 +2,7 @@
 
 #include <functional>
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <nlohmann/json.hpp>
 
@@ -99,6 +100,22 @@ TEST_F(OverlayTest, what_lies_elsewhere_or_is_too_much_is_refused_in_one_sentenc
     EXPECT_THAT(many.error().message, HasSubstr("layer \"many\" has more than 1 features"));
 }
 
+TEST_F(OverlayTest, a_file_of_more_layers_than_a_session_can_have_is_refused_before_all_are_read) {
+    const std::string file = write({}, {line({{820001, 825001}, {820050, 825001}})}, "first");
+    write({}, {line({{820001, 825002}, {820050, 825002}})}, "second");
+    const auto within = [&](const OverlayFileLimits& together) {
+        return read_vector_overlays(file, {}, ground_, limits_, together);
+    };
+    const auto both = within({.layers = 2, .bytes = 10'000});
+    ASSERT_TRUE(both) << both.error().message;
+    ASSERT_EQ(both->size(), 2U) << "the second layer is beside the first";
+    for (const OverlayFileLimits& less : {OverlayFileLimits{1, 10'000}, OverlayFileLimits{2, 150}}) {
+        const auto many = within(less);
+        ASSERT_FALSE(many);
+        EXPECT_THAT(many.error().message, HasSubstr(fmt::format("has more than {} layers", less.layers)));
+    }
+}
+
 TEST_F(OverlayTest, simplestyle_and_symbols_by_value_give_styles) {
     const std::string file =
         write({{"kind", true}, {"stroke", true}, {"stroke-width", false}},
@@ -178,6 +195,12 @@ TEST(OverlayText, of_a_saved_session_is_checked) {
     EXPECT_TRUE(refused([](json& t) { t["features"][0]["parts"][0].push_back(1); }));
     EXPECT_TRUE(refused([](json& t) { t["features"][0]["parts"][0][1] = "x"; }));
     EXPECT_TRUE(refused([](json& t) { t["features"][0]["style"] = 0; }));
+    EXPECT_TRUE(refused([](json& t) { t["features"][0]["style"] = 18446744073709551615U; })) << "-1 once it wraps";
+    EXPECT_TRUE(refused([](json& t) { t["features"][0]["style"] = -1.0; })) << "no whole number";
+    EXPECT_TRUE(refused([](json& t) { t["features"][0]["name"] = "a\u202Eb"; }));
+    EXPECT_TRUE(refused([](json& t) { t["features"][0]["attributes"]["a\u2066"] = 1; }));
+    EXPECT_TRUE(refused([](json& t) { t["features"][0]["attributes"]["a"] = "\u001B[2J"; }));
+    EXPECT_FALSE(refused([](json& t) { t["features"][0]["attributes"]["a"] = "Route\n7"; }));
     EXPECT_TRUE(refused([](json& t) { t["features"][0]["attributes"]["a"] = json::array(); }));
     EXPECT_TRUE(refused([](json& t) { t["styles"].push_back({{"stroke", "red"}}); }));
     EXPECT_TRUE(refused([](json& t) { t["features"] = json::array(); }));

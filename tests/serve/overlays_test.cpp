@@ -62,6 +62,8 @@ TEST_F(OverlaysTest, a_layer_is_seen_by_everybody_changed_removed_and_brought_ba
     EXPECT_THAT(client.post(path, {{"opacity", 2}}).body, HasSubstr("opacity = 2"));
     EXPECT_THAT(client.post(path, {{"colour", "url(x)"}}).body, HasSubstr("colour"));
     EXPECT_THAT(client.post(path, {{"visible", "no"}}).body, HasSubstr("visible"));
+    EXPECT_THAT(client.post(path, {{"name", " "}}).body, HasSubstr("must have characters that can be seen"))
+        << "a saved session must name its layers";
 
     EXPECT_EQ(client.ask("DELETE", path).status, 200);
     EXPECT_EQ(watcher.wait_for("overlays")["removed"], "Lane");

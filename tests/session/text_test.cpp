@@ -28,6 +28,14 @@ TEST(JsonText, reads_what_is_valid_and_not_too_deep) {
     EXPECT_EQ(parse_json(R"({"b":2,"b":3})").error().message, "the body has the key \"b\" twice in one object");
 }
 
+TEST(JsonText, refuses_more_values_than_are_wanted_before_it_parses_them) {
+    const std::string text = R"({"a": [1, 2, "[,{"], "b": {}})";
+    EXPECT_EQ(geo::json_values(text), 6U) << "three brackets and three commas; those in texts are none";
+    EXPECT_TRUE(parse_json(text, 6));
+    EXPECT_EQ(parse_json(text, 5).error().message, "the body holds 6 values; at most 5 are read");
+    EXPECT_FALSE(parse_json("[" + std::string(100, ',') + "]", 100));
+}
+
 TEST(JsonText, writes_text_that_every_reader_takes) {
     EXPECT_EQ(to_text({{"a", std::numeric_limits<double>::quiet_NaN()}}), R"({"a":null})");
     EXPECT_EQ(to_text("\xff"), "\"\xef\xbf\xbd\"");

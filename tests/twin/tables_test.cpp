@@ -4,6 +4,7 @@
 #include <gmock/gmock.h>
 
 #include "twin/journal.hpp"
+#include "twin/setup_file.hpp"
 #include "twin/table_entry.hpp"
 #include "twin_fixtures.hpp"
 
@@ -177,6 +178,53 @@ TEST(PlacedAlarms, know_what_was_drawn_in_the_page_and_are_refused_without_a_pla
                 HasSubstr("name = \"load\" is refused"));
     EXPECT_THAT(refusal(*scenario, put_entry("alarm", {{"webhook", "https://example.org"}})),
                 HasSubstr("no such key here"));
+}
+
+TEST(SavedTables, that_break_the_rules_of_their_section_are_refused_when_a_setup_is_read) {
+    scene::Scene scene = with_house();
+    params::AlarmSpec near;
+    near.name = "near";
+    near.structure = "House 38";
+    near.distance = 20;
+    scene.spec.alarms = {near};
+    const json good = json::parse(open(scene)->journal_json()["first_setup"].dump());
+    ASSERT_EQ(good["alarms"].size(), 1U);
+    const auto why = [&](const json& changes) {
+        json setup = good;
+        setup["alarms"][0].merge_patch(changes);
+        const auto read = read_setup(setup, scene);
+        return read ? "" : read.error().message;
+    };
+    EXPECT_EQ(why(json::object()), "");
+    EXPECT_EQ(why({{"from_scene", "yes"}}), "") << "what is not true is false";
+    EXPECT_THAT(why({{"id", ""}}), HasSubstr("setup.alarms[0]: id = \"\""));
+    EXPECT_THAT(why({{"values", {{"name", nullptr}}}}), HasSubstr("setup.alarms[0]: name: missing"));
+    EXPECT_THAT(why({{"values", {{"structure", nullptr}}}}), HasSubstr("setup.alarms[0]: structure: exactly one of"));
+    EXPECT_THAT(why({{"values", {{"distance_m", nullptr}}}}), HasSubstr("exactly one of"));
+    EXPECT_THAT(why({{"values", {{"structure", nullptr}, {"x_m", west + 20}}}}),
+                HasSubstr("y_m: x_m and y_m go together"));
+    EXPECT_THAT(why({{"values", {{"distance_m", nullptr}, {"structure", nullptr}, {"chainage_m", 5}, {"depth_m", 1}}}}),
+                HasSubstr("depth_m: needs structure"));
+}
+
+TEST(PlacedAlarms, two_of_one_id_in_a_saved_setup_are_both_watched) {
+    scene::Scene scene = with_house();
+    for (const char* name : {"near", "nearer"}) {
+        params::AlarmSpec& alarm = scene.spec.alarms.emplace_back();
+        alarm.name = name;
+        alarm.structure = "House 38";
+        alarm.distance = 1000;
+    }
+    const auto shared = std::make_shared<const scene::Scene>(scene);
+    json written = open(scene)->journal_json();
+    written["first_setup"]["alarms"][1]["id"] = written["first_setup"]["alarms"][0]["id"];
+    const auto journal = read_journal(written.dump());
+    ASSERT_TRUE(journal) << journal.error().message;
+    const auto opened = Scenario::open_at(*journal, shared, {});
+    ASSERT_TRUE(opened) << opened.error().message;
+    act(**opened, put_entry("trigger", {{"name", "slope"}, {"release", "scar"}}));  // rules are taken again
+    run_until(**opened, 3);
+    EXPECT_EQ((*opened)->alarms().size(), 2U);
 }
 
 TEST(PlacedTriggers, start_a_run_of_the_scene_with_their_limits) {

@@ -69,6 +69,11 @@ TEST(ZoneBlocks, are_told_of_a_forest_from_a_raster_alone) {
     EXPECT_EQ(zones[0]["blocks"], json({{west + 60, south, 20, 60}}));
     EXPECT_TRUE(zones[0]["polygons"].empty());
     EXPECT_FALSE(zones[1].contains("blocks")) << zones[1];
+    EXPECT_EQ(scenario->setup_json()["zones"], zones) << "as they were found before";
+    act(*scenario, {{"action", "remove_zone"}, {"id", zones[0]["id"]}});
+    EXPECT_FALSE(scenario->setup_json()["zones"][0].contains("blocks"));
+    act(*scenario, {{"action", "undo"}});
+    EXPECT_EQ(scenario->setup_json()["zones"], zones);
 }
 
 }  // namespace
