@@ -310,7 +310,8 @@ Status check_feature(const json& feature, std::size_t styles, std::size_t& point
     if (kind != "point" && kind != "line" && kind != "area") return Error{"a feature is no point, line or area"};
     const json parts = feature.value("parts", json()), attributes = feature.value("attributes", json()),
                style = feature.value("style", json());
-    const bool none = style.is_number_integer() && style == -1;
+    // An unsigned number beyond 2^63 would equal -1.
+    const bool none = style.is_number_integer() && !style.is_number_unsigned() && style == -1;
     if (!none && (!style.is_number_unsigned() || style.get<std::uint64_t>() >= styles)) {
         return Error{"a feature has no style"};
     }
