@@ -84,7 +84,7 @@ export async function testTables(run) {
     await until(() => ada.textContent(".pins.observations"), (t) => /Film of 2019/.test(t), "it is back");
     assert.equal((await setup()).changes.length, 0, "no change of the run");
     assert.equal((await setup()).observations.at(-1).values.uncertainty_mps, 1);
-    await eve.locator(".sheet-handle, .drawer-switch").first().tap();
+    await eve.locator(".sheet-handle").tap();
     await eve.locator("[data-tab=points]").tap();
     await until(() => eve.textContent(".pins.observations"), (t) => /Film of 2019/.test(t), "the other's list");
     assert.equal(await eve.isDisabled("button:has-text('Add an observation')"), true);
