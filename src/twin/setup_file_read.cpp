@@ -161,7 +161,7 @@ Status SetupReader::read_parts(const json& file, const char* key, const char* nu
 
 Status SetupReader::check_id(const json& file) {
     const bool given = file.is_object() && file.contains("id") && file["id"].is_string();
-    return given && file["id"] != "" ? Status() : Status(bad("id", file));
+    return given && !file["id"].get_ref<const std::string&>().empty() ? Status() : Status(bad("id", file));
 }
 
 Status SetupReader::check_keys_and_id(const json& file, std::initializer_list<std::string_view> keys) {
