@@ -36,7 +36,7 @@ Json place_table(const std::vector<NamedRun>& runs, std::size_t places, const Pl
     return all;
 }
 
-PlaceChart place_chart(const std::vector<NamedRun>& runs, std::size_t places, const PlacePlots& plots) {
+std::pair<Json, Json> place_chart(const std::vector<NamedRun>& runs, std::size_t places, const PlacePlots& plots) {
     constexpr double step = 190, height = 120, width = 410;
     std::vector<std::size_t> drawn;
     for (std::size_t k = 0; k < places; ++k) {
@@ -44,9 +44,9 @@ PlaceChart place_chart(const std::vector<NamedRun>& runs, std::size_t places, co
         if (std::any_of(runs.begin(), runs.end(), shows)) drawn.push_back(k);
     }
     if (drawn.empty()) return {};
-    PlaceChart result;
+    Json not_drawn;
     if (drawn.size() > most_drawn) {
-        result.not_drawn = drawn.size() - most_drawn;
+        not_drawn = drawn.size() - most_drawn;
         drawn.resize(most_drawn);
     }
     ValueRange time{0, 0};
@@ -55,6 +55,7 @@ PlaceChart place_chart(const std::vector<NamedRun>& runs, std::size_t places, co
     for (std::size_t place = 0; place < drawn.size(); ++place) {
         const std::size_t k = drawn[place];
         std::vector<PlacePlots::Curves> curves;
+        curves.reserve(runs.size());
         for (const NamedRun& run : runs) curves.push_back(plots.curves(run, k));
         const double top = 34 + step * static_cast<double>(place);
         Plot first(66, top, width, height, time, range_of(curves, &PlacePlots::Curves::first));
@@ -71,8 +72,7 @@ PlaceChart place_chart(const std::vector<NamedRun>& runs, std::size_t places, co
         chart.plots.push_back(std::move(first));
         chart.plots.push_back(std::move(second));
     }
-    result.chart = chart_json(chart);
-    return result;
+    return {chart_json(chart), std::move(not_drawn)};
 }
 
 }  // namespace talus::report

@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <functional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "report/results.hpp"
@@ -28,9 +29,8 @@ struct PlacePlots {
     std::function<Curves(const NamedRun&, std::size_t)> curves;
     std::function<std::string(std::size_t)> name;
 };
-struct PlaceChart {
-    Json chart, not_drawn;  ///< null: nothing to draw; how many places are left out, or null
-};
-[[nodiscard]] PlaceChart place_chart(const std::vector<NamedRun>& runs, std::size_t places, const PlacePlots& plots);
+/// The chart, null: nothing to draw; and how many places are left out, or null.
+[[nodiscard]] std::pair<Json, Json> place_chart(const std::vector<NamedRun>& runs, std::size_t places,
+                                                const PlacePlots& plots);
 
 }  // namespace talus::report

@@ -70,11 +70,11 @@ Json gauges(const std::vector<NamedRun>& runs) {
                 const terrain::Gauge& gauge = gauge_record(runs.front(), k).gauge;
                 return fmt::format("{}, {}", shortened(gauge.name, 40), place_of(gauge));
             }};
-    PlaceChart drawn = place_chart(runs, count, plots);
+    auto [chart, not_drawn] = place_chart(runs, count, plots);
     return {{"table", place_table(runs, count, rows)},
-            {"chart", std::move(drawn.chart)},
+            {"chart", std::move(chart)},
             {"cells", std::move(cells)},
-            {"not_drawn", std::move(drawn.not_drawn)}};
+            {"not_drawn", std::move(not_drawn)}};
 }
 
 }  // namespace talus::report

@@ -45,10 +45,9 @@ Json cross_sections(const std::vector<NamedRun>& runs) {
                 return curves;
             },
         .name = [&](std::size_t k) { return shortened(section_record(runs.front(), k).section.name, 40); }};
-    PlaceChart drawn = place_chart(runs, count, plots);
-    return {{"table", place_table(runs, count, rows)},
-            {"chart", std::move(drawn.chart)},
-            {"not_drawn", std::move(drawn.not_drawn)}};
+    auto [chart, not_drawn] = place_chart(runs, count, plots);
+    return {
+        {"table", place_table(runs, count, rows)}, {"chart", std::move(chart)}, {"not_drawn", std::move(not_drawn)}};
 }
 
 }  // namespace talus::report
