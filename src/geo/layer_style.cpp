@@ -106,7 +106,7 @@ std::optional<FeatureStyle> style_of(const CPLXMLNode* symbol) {
 std::string colour_of(const std::string& text) {
     const auto is_hex = [](unsigned char c) { return std::isxdigit(c) != 0; };
     if (text.size() < 2 || text[0] != '#' || !std::all_of(text.begin() + 1, text.end(), is_hex)) return {};
-    const std::string lower = lower_case(text);
+    std::string lower = lower_case(text);
     if (text.size() == 7) return lower;
     if (text.size() != 4) return {};
     return {'#', lower[1], lower[1], lower[2], lower[2], lower[3], lower[3]};

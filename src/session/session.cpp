@@ -44,7 +44,7 @@ Result<std::unique_ptr<Session>> Session::open(Setup setup) {
 
 std::string Session::join(Role role, const std::string& name, Clock::time_point now) {
     auto guest = std::make_unique<Guest>();
-    const std::string id = room_->join(*guest, role, name, "", now).id;
+    std::string id = room_->join(*guest, role, name, "", now).id;
     guests_[id] = std::move(guest);
     return id;
 }
