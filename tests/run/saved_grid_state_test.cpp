@@ -106,7 +106,7 @@ TEST_F(SavedGridState, of_the_end_of_a_fast_inflow_that_limits_the_step_is_conti
     write("flow.csv", "time_s,discharge_m3ps,velocity_mps\n0,30,25\n7,30,25\n");
     const auto whole = run_scene(loaded({"solver.grid_cell_m=2"}), {});
     ASSERT_TRUE(whole);
-    for (const char* end : {"solver.end_time_s=2.03", "solver.end_time_s=3.07"}) {
+    for (const char* end : {"solver.end_time_s=6.03", "solver.end_time_s=6.57"}) {
         const std::string state = state_at(loaded({"solver.grid_cell_m=2", end}), {});
         const auto rest = run_from(loaded({"solver.grid_cell_m=2"}), state);
         ASSERT_TRUE(rest) << rest.error().message;
