@@ -226,7 +226,8 @@ void Exports::scene_archive(const twin::Scenario& scenario, const Respond& respo
     writer_->post([this, folder, source = source_, text = scenario.scene_text(), respond] {
         const ExportFile& wanted = *find_file(scene_zip);
         const auto made = [&]() -> Result<Response> {
-            TALUS_ASSIGN(const std::string scene, text(source.file, source.overrides));
+            // It is written into another folder: its files need whole paths.
+            TALUS_ASSIGN(const std::string scene, text(fs::absolute(source.file), source.overrides));
             if (Bytes sent = archive_sent_.lock(); sent && scene == archived_)
                 return answer_with(std::move(sent), wanted);
             std::error_code error;
