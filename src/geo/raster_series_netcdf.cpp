@@ -190,11 +190,14 @@ Result<bool> write_file(const std::string& path, const SeriesFile& series, const
 
     const GridGeometry& g = series.geometry;
     const OGRSpatialReference reference = to_spatial_reference(series.crs);
-    const auto time = file.dimension("time", series.times.size());
+    // To the microsecond: a sum of steps that ends at 1 s reads 1, not 0.9999999999999999.
+    std::vector<double> times_s = series.times;
+    for (double& t : times_s) t = std::round(t * 1e6) / 1e6;
+    const auto time = file.dimension("time", times_s.size());
     const auto y = file.dimension("y", static_cast<std::size_t>(g.rows));
     const auto x = file.dimension("x", static_cast<std::size_t>(g.columns));
     const bool coordinates =
-        file.coordinate(time, series.times,
+        file.coordinate(time, times_s,
                         {{"standard_name", "time"},
                          {"long_name", "time since the start of the run; the date means nothing"},
                          {"units", "seconds since 2000-01-01 00:00:00"},

@@ -118,7 +118,7 @@ void note_implausible_terrain(const ReachableGround& reachable, Scene& scene) {
                           angle(foot * median), geo::scale_command(spec.file, spec.band, foot))
                     : "";
     scene.notes.push_back(
-        fmt::format("terrain: where debris can go, {}; is that so?{} A surface model with trees and "
+        fmt::format("terrain: where debris can go, {}; check these heights.{} A surface model with trees and "
                     "houses looks so{}: use one of the ground",
                     fmt::join(found, "; "), feet, may_be_feet ? " too" : ""));
 }

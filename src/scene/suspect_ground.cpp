@@ -108,19 +108,19 @@ Status check_plain(const ParsedScene& parsed, const ReachableGround& reachable, 
     if (step < odd_step || cells < odd_step_cells) return {};
     const params::TerrainSpec& spec = scene.spec.terrain;
     const std::string text = fmt::format(
-        "{} cells hold exactly {:.10g} m where debris can go, and the ground beside them is {:.0f} m away in the "
-        "median "
-        "of their edge (at {}: {:.0f} m)",
-        plain.cells, value, step, place_text(plain.place), plain.highest);
+        "{} cells hold exactly {:.10g} m within reach of the debris; along their edge the adjacent ground differs by "
+        "{:.0f} m (median; {:.0f} m at {})",
+        plain.cells, value, step, plain.highest, place_text(plain.place));
     const std::string command = geo::declare_nodata_command(spec.file, spec.band, value);
     if (step < false_step || cells < false_step_cells) {
-        scene.notes.push_back(fmt::format("terrain: {}; is that so? If it marks missing data: {}", text, command));
+        scene.notes.push_back(
+            fmt::format("terrain: {}; check these heights. If the value marks missing data: {}", text, command));
         return {};
     }
-    return Error{
-        fmt::format("{}: {}: {}: it marks missing data, over whose edge debris would fall; declare it: {} (or "
-                    "leave these cells out with terrain.extent_m)",
-                    parsed.at("terrain.file"), spec.file, text, command)};
+    return Error{fmt::format(
+        "{}: {}: {}: it marks missing data, over whose edge debris would fall; declare it as nodata: {} (or "
+        "leave these cells out with terrain.extent_m)",
+        parsed.at("terrain.file"), spec.file, text, command)};
 }
 
 /// Cells beside nodata that are no ground.
@@ -166,19 +166,16 @@ Status check_edge_of_nodata(const ParsedScene& parsed, const ReachableGround& re
         "-9999)";
     if (below.cells > 0) {
         return Error{fmt::format(
-            "{}: {}: {} cells beside nodata are far below all other ground ({:.0f} m, {:.0f} m below the cell beside "
-            "it "
-            "at {}; the lowest other ground is at {:.0f} m): means of ground and nodata, as resampling leaves them; "
-            "{}, "
-            "or take them out: {}",
+            "{}: {}: {} cells beside nodata are far below all other ground (one of {:.0f} m is {:.0f} m below its "
+            "neighbour at {}; the lowest other ground is at {:.0f} m): means of ground and nodata, as resampling "
+            "leaves them; {}, or take them out: {}",
             parsed.at("terrain.file"), spec.file, below.cells, below.elevation, below.most, place_text(below.place),
             lowest, again, geo::cut_below_command(spec.file, spec.band, std::floor(lowest)))};
     }
     if (odd.cells >= fewest_cells) {
         scene.notes.push_back(
-            fmt::format("terrain: {} cells beside nodata are up to {:.0f} m below the ground beside them (at {}); is "
-                        "that so? If they "
-                        "are means of ground and nodata, {}",
+            fmt::format("terrain: {} cells beside nodata are up to {:.0f} m below their neighbours (at {}); check "
+                        "these heights. If they are means of ground and nodata, {}",
                         odd.cells, odd.most, place_text(odd.place), again));
     }
     return {};

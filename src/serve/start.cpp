@@ -65,14 +65,15 @@ Start::~Start() {
 }
 
 void Start::close() {
-    files_.reset();
-    drafts_.reset();
-    job_forms_.reset();
-    jobs_.reset();
     stop_ = true;
     opener_.reset();
     if (made_) made_->close();
     made_ = nullptr;
+    if (const OpenSessionPtr open = host_.open()) open->close();  // its loop may be handing over what is to be saved
+    files_.reset();
+    drafts_.reset();
+    job_forms_.reset();
+    jobs_.reset();
 }
 
 void Start::describe(Role role, const Respond& respond) {

@@ -81,7 +81,7 @@ const std::vector<RecordedFlow::Format>& RecordedFlow::formats() {
          {"run.glb"}},
         {"3dtiles", "The same placed on the globe, for Cesium", {"tileset.json", "run.glb"}},
         {"geotiff",
-         "Depth, speed and pressure with a band per moment, for QGIS and other GIS",
+         "Depth, speed and pressure with a band per frame, for QGIS and other GIS",
          {"depth.tif", "speed.tif", "pressure.tif"}},
         {"netcdf", "The same maps with time as a dimension, for Python, MATLAB and models", {"maps.nc"}}};
     return all;
@@ -122,7 +122,7 @@ std::string RecordedFlow::why_none(const Format& format, const std::vector<Frame
     }
     if (const double bytes = kept_bytes(frames); bytes > most_bytes) {
         return fmt::format(
-            "{} moments need {:.1f} GB of disk while they are written; at most {:.0f} GB: choose a "
+            "{} frames need {:.1f} GB of disk while they are written; at most {:.0f} GB: choose a "
             "longer interval",
             frames.size(), bytes / 1e9, most_bytes / 1e9);
     }
@@ -140,13 +140,13 @@ json RecordedFlow::describe(double interval) const {
         offered.push_back({{"name", format.name},
                            {"what", format.what},
                            {"files", format.files},
-                           {"moments", drawn ? std::min(frames.size(), most) : frames.size()},
+                           {"frames", drawn ? std::min(frames.size(), most) : frames.size()},
                            {"bytes", static_cast<std::int64_t>(drawn ? sizes.drawn : sizes.maps)},
                            {"refused", refused.empty() ? json() : json(refused)}});
     }
     return {{"from_s", frames.front()->time},
             {"to_s", frames.back()->time},
-            {"moments", frames.size()},
+            {"frames", frames.size()},
             {"interval_s", std::max(interval, recorded_interval_)},
             {"shortest_interval_s", recorded_interval_},
             {"formats", std::move(offered)}};

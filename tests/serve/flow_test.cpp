@@ -52,7 +52,7 @@ TEST_F(FlowTest, is_offered_written_and_read_back) {
     const json offer = eye.get("/api/scenarios/A/flow?interval_s=0.5").json();
     EXPECT_EQ(offer["scenario"], "A");
     EXPECT_EQ(offer["interval_s"], 0.5);
-    EXPECT_GE(offer["moments"], 7);
+    EXPECT_GE(offer["frames"], 7);
     EXPECT_GT(offer["formats"][0]["bytes"], 1000) << offer;
     const Answer begun =
         hand.post("/api/scenarios/A/flow", {{"formats", {"gltf", "3dtiles", "netcdf"}}, {"interval_s", 0.5}});
@@ -75,7 +75,7 @@ TEST_F(FlowTest, is_offered_written_and_read_back) {
     for (const json& mesh : glb->root()["meshes"]) {
         moments += mesh["name"].get<std::string>().starts_with("debris") ? 1U : 0U;
     }
-    EXPECT_EQ(moments, offer["moments"]);
+    EXPECT_EQ(moments, offer["frames"]);
 
     EXPECT_EQ(hand.ask("DELETE", "/api/flow").json()["state"], "idle");
     EXPECT_EQ(eye.get("/api/flow/run.glb").status, 404);

@@ -53,7 +53,7 @@ bool never_ends(double) {
     return true;
 }
 
-TEST(RecordedFlow, has_the_debris_that_a_run_writes_of_the_same_moments) {
+TEST(RecordedFlow, has_the_debris_that_a_run_writes_of_the_same_times) {
     const talus::test::TemporaryFolder folder;
     scene::Scene scene = channel_scene();
     scene.spec.solver.end_time = 5;
@@ -89,8 +89,8 @@ TEST(RecordedFlow, has_the_debris_that_a_run_writes_of_the_same_moments) {
     expect_same_positions(of_run, one[one.size() / 2], of_live, other[one.size() / 2]);
     expect_same_positions(of_run, one.back(), of_live, other.back());
 
-    EXPECT_EQ(offer["moments"], one.size());
-    EXPECT_EQ(offer["formats"][0]["moments"], one.size());
+    EXPECT_EQ(offer["frames"], one.size());
+    EXPECT_EQ(offer["formats"][0]["frames"], one.size());
     EXPECT_EQ(offer["to_s"], live->time());
     const auto bytes = static_cast<double>(std::filesystem::file_size(folder.path() / "live" / "run.glb"));
     EXPECT_GT(offer["formats"][0]["bytes"].get<double>(), bytes / 3) << bytes;
@@ -165,7 +165,7 @@ TEST(RecordedFlow, is_refused_with_the_reason) {
     EXPECT_THAT(flow->check({"gltf", "netcdf", "gltf"}, 1).error().message, HasSubstr("\"gltf\" is there twice"));
     EXPECT_EQ(flow->check(std::vector<std::string>(5, "gltf"), 1).error().message,
               "formats has 5 names; there are 4 formats");
-    EXPECT_LE(flow->describe(0.001)["moments"].get<int>(), 12) << "more than is recorded";
+    EXPECT_LE(flow->describe(0.001)["frames"].get<int>(), 12) << "more than is recorded";
 }
 
 }  // namespace

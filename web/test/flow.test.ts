@@ -2,11 +2,11 @@ import { describe, expect, it } from "vitest";
 import type { FlowExport, FlowOffer } from "../src/protocol/messages";
 import { flowProgress, flowSummary, intervalProblem } from "../src/state/flow";
 
-const offer: FlowOffer = { scenario: "A", from_s: 0, to_s: 212.4, moments: 213, interval_s: 1, shortest_interval_s: 0.1, formats: [
-  { name: "gltf", what: "", files: ["run.glb"], moments: 100, bytes: 12e6, refused: null },
-  { name: "3dtiles", what: "", files: ["tileset.json", "run.glb"], moments: 100, bytes: 12e6, refused: null },
-  { name: "geotiff", what: "", files: ["depth.tif", "speed.tif", "pressure.tif"], moments: 213, bytes: 3e6, refused: null },
-  { name: "netcdf", what: "", files: ["maps.nc"], moments: 213, bytes: 3e6, refused: null },
+const offer: FlowOffer = { scenario: "A", from_s: 0, to_s: 212.4, frames: 213, interval_s: 1, shortest_interval_s: 0.1, formats: [
+  { name: "gltf", what: "", files: ["run.glb"], frames: 100, bytes: 12e6, refused: null },
+  { name: "3dtiles", what: "", files: ["tileset.json", "run.glb"], frames: 100, bytes: 12e6, refused: null },
+  { name: "geotiff", what: "", files: ["depth.tif", "speed.tif", "pressure.tif"], frames: 213, bytes: 3e6, refused: null },
+  { name: "netcdf", what: "", files: ["maps.nc"], frames: 213, bytes: 3e6, refused: null },
 ] };
 const job = (now: Partial<FlowExport>): FlowExport => ({ state: "idle", scenario: "A", share: null, message: "", files: [], ...now });
 

@@ -49,8 +49,8 @@ async function exportFlow(page, server) {
   assert.match(glb.name, /-A\.glb$/);
   assert.equal(glb.bytes.subarray(0, 4).toString(), "glTF");
   const described = JSON.parse(glb.bytes.subarray(20, 20 + glb.bytes.readUInt32LE(12)).toString());
-  const { moments } = await server.ask("scenarios/A/flow?interval_s=2");
-  assert.equal(described.meshes.filter(({ name }) => name.startsWith("debris")).length, moments);
+  const { frames } = await server.ask("scenarios/A/flow?interval_s=2");
+  assert.equal(described.meshes.filter(({ name }) => name.startsWith("debris")).length, frames);
   await flow.locator("label:has-text('3D Tiles') input").check();
   await flow.locator("button:has-text('Write files')").click();
   const both = flow.locator("button:has-text('Save 2 files as ZIP')");

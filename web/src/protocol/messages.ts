@@ -811,7 +811,7 @@ export interface ProbeSeries {
   pressure_kPa: Column;
 }
 
-/** Which moments are recorded. */
+/** Which frames are recorded. */
 export interface Recording {
   /** Of its frames. */
   times_s: number[];
@@ -871,7 +871,7 @@ export interface FlowFormatOffer {
   /** Their names. */
   files: string[];
   /** In the files; an animation has 100 at most. */
-  moments: number;
+  frames: number;
   /** About how large the files are together. */
   bytes: number;
   /** Why this run cannot have it. */
@@ -887,7 +887,7 @@ export interface FlowOffer {
   /** The last moment, which is now. */
   to_s: number;
   /** Of the recording, at this interval. */
-  moments: number;
+  frames: number;
   /** Simulated time between them. */
   interval_s: number;
   /** That of the recording. */
@@ -900,7 +900,7 @@ export interface FlowOffer {
 export interface WantedFlow {
   /** At least one. */
   formats: FlowFormat[];
-  /** Simulated time between moments, 0.001 to 1e7; default: outputs.series_interval_s of the scene. */
+  /** Simulated time between frames, 0.001 to 1e7; default: outputs.series_interval_s of the scene. */
   interval_s?: number;
 }
 

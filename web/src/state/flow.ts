@@ -12,9 +12,9 @@ export function flowSummary(offer: FlowOffer, chosen: readonly FlowFormat[]): st
   const drawn = formats.filter((format) => format.files.includes("run.glb"));
   const maps = formats.filter((format) => !format.files.includes("run.glb"));
   const size = Math.max(0, ...drawn.map((format) => format.bytes)) + maps.reduce((sum, format) => sum + format.bytes, 0);
-  const fewest = Math.min(...formats.map((format) => format.moments));
-  const thinned = fewest < offer.moments ? `, ${fewest} of them in the animation` : "";
-  return `${offer.moments} frames from ${tick(offer.from_s)} to ${tick(offer.to_s)} s, ${tick(offer.interval_s)} s apart${thinned}; about ${bytes(size)}.`;
+  const fewest = Math.min(...formats.map((format) => format.frames));
+  const thinned = fewest < offer.frames ? `, ${fewest} of them in the animation` : "";
+  return `${offer.frames} frames from ${tick(offer.from_s)} to ${tick(offer.to_s)} s, ${tick(offer.interval_s)} s apart${thinned}; about ${bytes(size)}.`;
 }
 
 const longest_s = 1e7;
