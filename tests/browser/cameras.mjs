@@ -54,7 +54,7 @@ try {
   const about = await server.ask("scene");
   const at = places(about);
   const length = about.flow_path.chainage_m.at(-1);
-  const saved = [{ position: at(length + 30, 25, 25), target: at(0.55 * length, 0, 5) }, { position: at(0.6 * length, 130, 12), target: at(0.6 * length, 0, 2) }];
+  const saved = [{ position: at(length + 30, 25, 25), target: at(0.55 * length, 0, 5) }, { position: at(0.72 * length, 12, 10), target: at(0.42 * length, 0, 1) }];
   /** The mode of the camera, or the number of a saved view; null: as the page begins. */
   const views = { first: null, uphill: "1", low: "2", follow: "follow", plan: "plan" };
   const wanted = Object.entries(views).filter(([name]) => only.length === 0 || only.includes(name));

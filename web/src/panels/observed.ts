@@ -47,8 +47,8 @@ export class ObservedTable {
     this.element.hidden = all.length === 0;
     this.element.replaceChildren(h("h3", {}, "Observed and computed"), h("table", { class: "plain observed" },
       h("thead", {}, h("tr", {}, h("th", { scope: "col" }, "Observation"), h("td", {}, "Observed"), ...names.map((name) => h("td", {}, names.length > 1 ? `Computed ${name}` : "Computed")))),
-      h("tbody", {}, ...all.map(({ row, runs }) => h("tr", {}, h("th", { scope: "row" }, row.name, row.unit ? h("small", {}, ` ${unitText(row.unit)}`) : null),
-        h("td", {}, `${sign[row.is]}${number(row.observed)} ± ${number(row.uncertainty, 2)}`),
+      h("tbody", {}, ...all.map(({ row, runs }) => h("tr", {}, h("th", { scope: "row" }, row.name),
+        h("td", {}, `${sign[row.is]}${number(row.observed)} ± ${number(row.uncertainty, 2)}`, row.unit ? h("small", {}, ` ${unitText(row.unit)}`) : null),
         ...runs.map((own) => {
           const off = own?.deviation ?? null;
           return h("td", { title: off === null ? "" : `${number(Math.abs(off), 2)} standard deviations from the observation`, class: off !== null && Math.abs(off) > 2 ? "far" : "" }, number(own?.computed));

@@ -46,9 +46,9 @@ export function valueFrom(key: TableKey, text: string): TableValue {
   return value;
 }
 
-/** What a field says below it: the range, and what no value means. */
+/** What a field says below it: the range, where it is one (a coordinate has any value), and what no value means. */
 export function hintOf(key: TableKey): string {
-  const range = key.is === "number" && key.allowed ? `${key.allowed}${key.unit ? ` ${unitText(key.unit)}` : ""}` : "";
+  const range = key.is === "number" && key.allowed && !/1000000000$/.test(key.allowed) ? `${key.allowed}${key.unit ? ` ${unitText(key.unit)}` : ""}` : "";
   const none = key.required || key.absent === "" || key.absent === "none" ? "" : `if empty: ${key.absent.replaceAll("_", " ")}`;
   return [key.help, [range, none].filter(Boolean).join("; ")].filter(Boolean).join(" ");
 }
