@@ -223,4 +223,10 @@ class Declaration {
 [[nodiscard]] Section declare_trigger();
 [[nodiscard]] Section declare_alarm();
 
+/// Options, and what is at risk.
+[[nodiscard]] Section declare_option();
+[[nodiscard]] Section declare_risk();
+[[nodiscard]] Section declare_risk_scenario();
+[[nodiscard]] Section declare_exposure();
+
 }  // namespace talus::params
