@@ -121,7 +121,7 @@ Result<std::vector<std::string>> wanted_options(const RiskArguments& arguments, 
 }
 
 /// What the runs that are missing cost, s of one thread each; NaN: it could not be tried.
-double cost_of_run(const scene::Scene& scene, const InterruptWatch& watch) {
+double seconds_of_run(const scene::Scene& scene, const InterruptWatch& watch) {
     if (scene.spec.solver.model == params::ModelChoice::particles) {
         const double spacing = particle_spacing(scene);
         const auto rehearsal = run::rehearse(scene, spacing, watch.stop_requested());
@@ -150,7 +150,7 @@ void tell_cost(const risk::Study& study, const RiskArguments& arguments, const S
                const InterruptWatch& watch, ThrottledProgress& reporter) {
     const std::size_t missing = missing_runs(study);
     if (arguments.quiet || missing == 0) return;
-    const double each = cost_of_run(*study.parts.front().scene, watch);
+    const double each = seconds_of_run(*study.parts.front().scene, watch);
     const double wall = each * static_cast<double>(missing) / (shared.runs_at_once * ranks);
     if (arguments.json) {
         (void)print(cost_json(study, missing, wall) + "\n");

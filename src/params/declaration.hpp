@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -194,6 +195,16 @@ class Declaration {
 /// Friction by pairs does not support it.
 [[nodiscard]] inline Need stress(bool even_at_0 = false) {
     return {"solver.internal_friction", "stress", "friction by pairs has no such law", even_at_0};
+}
+
+/// Of entries that results, messages or the command line name.
+template <class Spec>
+[[nodiscard]] std::optional<Violation> name_twice(const Spec& entry, const std::vector<Spec>& all) {
+    const auto same =
+        std::count_if(all.begin(), all.end(), [&](const Spec& other) { return other.name == entry.name; });
+    if (same == 1) return {};
+    return Violation{"name",
+                     " = \"" + entry.name + "\" is refused; " + std::to_string(same) + " entries have that name"};
 }
 
 /// Sources of debris.

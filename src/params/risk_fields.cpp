@@ -12,15 +12,6 @@
 namespace talus::params {
 namespace {
 
-/// Options, scenarios and exposures are named in results and on the command line.
-template <class Spec>
-std::optional<Violation> name_twice(const Spec& entry, const std::vector<Spec>& all) {
-    const auto same =
-        std::count_if(all.begin(), all.end(), [&](const Spec& other) { return other.name == entry.name; });
-    if (same == 1) return {};
-    return Violation{"name", fmt::format(" = \"{}\" is refused; {} entries have that name", entry.name, same)};
-}
-
 /// `prefix`: of the name of a section that has none of its own, by its number.
 template <class Spec>
 std::optional<Violation> names_none(const std::string& key, const std::vector<std::string>& names,

@@ -33,16 +33,12 @@ std::string suffix(std::size_t option) {
     return option == 0 ? "" : fmt::format("_option_{}", option);
 }
 
-std::string per(const StudyResult& result) {
-    return result.study->per_event ? "per event" : "per year";
-}
-
 void add_estimate(products::Csv& csv, const stats::Estimate& e, bool there) {
     for (const double v : {e.value, e.low, e.high}) csv.number(there ? v : absent);
 }
 
 /// The columns of an item's numbers in tables; `per`: "year" or "event".
-std::string item_columns(const std::string& per) {
+std::string item_header(const std::string& per) {
     std::string text;
     for (const char* name : {"impacts", "loss", "deaths", "individual_risk"}) {
         for (const char* part : {"", "_low", "_high"}) text += fmt::format(",{}_per_{}{}", name, per, part);
@@ -63,7 +59,7 @@ const char* kind_of(const ItemRisk& item, bool total) {
 
 /// A row per option and item; `of`: the risks or the differences.
 std::string items_csv(const StudyResult& result, const std::vector<Risk>& of, std::size_t first) {
-    products::Csv csv("option,kind,name,exposure" + item_columns(result.study->per_event ? "event" : "year"));
+    products::Csv csv("option,kind,name,exposure" + item_header(result.study->per_event ? "event" : "year"));
     for (std::size_t k = first; k < of.size(); ++k) {
         const auto row = [&](const ItemRisk& item, bool total) {
             csv.word(result.name_of(k)).word(kind_of(item, total)).word(item.name).word(item.exposure);
@@ -90,7 +86,7 @@ std::string fn_csv(const StudyResult& result) {
 
 std::string options_csv(const StudyResult& result) {
     products::Csv csv("option,cost,life_years,interest_rate_per_year,upkeep_per_year,cost_per_year,currency" +
-                      item_columns(result.study->per_event ? "event" : "year"));
+                      item_header(result.study->per_event ? "event" : "year"));
     for (std::size_t k = 1; k < result.risks.size(); ++k) {
         const params::OptionSpec& option = *result.option(k);
         csv.word(option.name).number(option.cost).number(option.life).number(option.interest_rate);
@@ -224,9 +220,9 @@ report::HazardMap debris_style(const StudyResult& result, std::size_t option) {
     report::HazardMap style;
     style.file = "debris_frequency" + suffix(option);
     const double depth = result.scene().spec.outputs.arrival_depth;
-    style.title = fmt::format("Debris deeper than {} m, events {}{}", depth, per(result),
+    style.title = fmt::format("Debris deeper than {} m, events {}{}", depth, result.study->per(),
                               result.risks.size() > 1 ? ", " + result.name_of(option) : "");
-    style.description = fmt::format("events {} with debris deeper than {} m", per(result), depth);
+    style.description = fmt::format("events {} with debris deeper than {} m", result.study->per(), depth);
     style.unit = result.study->per_event ? "" : "1/year";
     style.breaks = frequency_breaks;
     style.full_scale = frequency_breaks.back();
@@ -237,9 +233,9 @@ report::HazardMap debris_style(const StudyResult& result, std::size_t option) {
 report::HazardMap individual_style(const StudyResult& result, std::size_t option) {
     report::HazardMap style;
     style.file = "individual_risk" + suffix(option);
-    style.title =
-        fmt::format("Individual risk {}{}", per(result), result.risks.size() > 1 ? ", " + result.name_of(option) : "");
-    style.description = fmt::format("probability of death {} of a person who is always there", per(result));
+    style.title = fmt::format("Individual risk {}{}", result.study->per(),
+                              result.risks.size() > 1 ? ", " + result.name_of(option) : "");
+    style.description = fmt::format("probability of death {} of a person who is always there", result.study->per());
     style.unit = result.study->per_event ? "" : "1/year";
     style.breaks = individual_breaks;
     style.full_scale = individual_breaks.back();

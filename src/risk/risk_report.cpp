@@ -69,10 +69,6 @@ Json item_numbers(const ItemRisk& item) {
             {"individual_risk", numbers(item.individual, item.has_individual)}};
 }
 
-std::string per(const StudyResult& result) {
-    return result.study->per_event ? "per event" : "per year";
-}
-
 /// Impact as people ask for it: the probability in a year; per event it is a probability already.
 stats::Estimate impact_of(const StudyResult& result, const ItemRisk& item) {
     return result.study->per_event ? item.impact : annual_probability(item.impact);
@@ -90,7 +86,7 @@ std::string individual_tone(const StudyResult& result, double risk) {
 }
 
 std::vector<Column> item_columns(const StudyResult& result, bool difference) {
-    const std::string unit = per(result);
+    const std::string unit = result.study->per();
     const std::string money = result.scene().spec.risk.currency + " " + unit;
     std::vector<Column> columns = {
         {"impact", difference ? "Events that reach something" : "Probability of impact", unit, "", "n"}};
@@ -303,22 +299,23 @@ Json key_figures_of(const StudyResult& result) {
                                : fmt::format("95 %: {} to {}", small(e.low), small(e.high));
     };
     const stats::Estimate impact = impact_of(result, all);
-    add("impact", "Probability that something is hit", small(impact.value), per(result), interval(impact), false);
+    add("impact", "Probability that something is hit", small(impact.value), result.study->per(), interval(impact),
+        false);
     if (all.has_loss) {
-        add("loss", "Expected loss", small(all.loss.value), result.scene().spec.risk.currency + " " + per(result),
-            interval(all.loss), false);
+        add("loss", "Expected loss", small(all.loss.value),
+            result.scene().spec.risk.currency + " " + result.study->per(), interval(all.loss), false);
     }
     if (all.has_individual) {
         const Criteria* criteria = criteria_for(result);
         const bool over = criteria != nullptr && all.individual.value > criteria->existing_individual;
-        add("individual_risk", "Highest individual risk", small(all.individual.value), per(result),
+        add("individual_risk", "Highest individual risk", small(all.individual.value), result.study->per(),
             criteria == nullptr ? interval(all.individual)
                                 : fmt::format("limits {} (existing), {} (new)", small(criteria->existing_individual),
                                               small(criteria->new_individual)),
             over);
     }
     if (all.has_deaths) {
-        add("deaths", "Expected deaths", small(all.deaths.value), per(result), interval(all.deaths), false);
+        add("deaths", "Expected deaths", small(all.deaths.value), result.study->per(), interval(all.deaths), false);
     }
     return figures;
 }
@@ -355,7 +352,8 @@ MapContent content_of(const StudyResult& result) {
             content.layers.push_back(
                 {readable(individual_style(result, k), 1e6, event ? "10⁻⁶ per event" : "10⁻⁶ per year"),
                  &outcome.individual, tab.empty() ? "Individual risk" : "Risk: " + tab,
-                 fmt::format("Probability of death {} of a person who is always there, in millionths.", per(result)),
+                 fmt::format("Probability of death {} of a person who is always there, in millionths.",
+                             result.study->per()),
                  1});
         }
         content.layers.push_back({event ? readable(debris_style(result, k), 100, "%")
@@ -366,8 +364,8 @@ MapContent content_of(const StudyResult& result) {
     content.cell = content.reached->geometry.cell;
     content.farthest_chainage = std::numeric_limits<double>::quiet_NaN();
     content.buildings.title = "Individual risk in buildings";
-    content.buildings.class_names = {"not hit, or not exposed", "up to 10⁻⁵ " + per(result),
-                                     "10⁻⁵ to 10⁻⁴ " + per(result), "over 10⁻⁴ " + per(result)};
+    content.buildings.class_names = {"not hit, or not exposed", "up to 10⁻⁵ " + result.study->per(),
+                                     "10⁻⁵ to 10⁻⁴ " + result.study->per(), "over 10⁻⁴ " + result.study->per()};
     const std::vector<ItemRisk>& items = result.risks.front().items;
     for (std::size_t b = 0; b < result.scene().buildings.size(); ++b) {
         const bool known = b < result.study->exposures.buildings.size();
@@ -375,7 +373,8 @@ MapContent content_of(const StudyResult& result) {
         content.buildings.classes.push_back(!(risk > 0) ? 0 : risk <= 1e-5 ? 1 : risk <= 1e-4 ? 2 : 3);
         content.buildings.titles.push_back(known ? fmt::format("{}: impact {}, individual risk {} {}", items[b].name,
                                                                small(impact_of(result, items[b]).value),
-                                                               items[b].has_individual ? small(risk) : "–", per(result))
+                                                               items[b].has_individual ? small(risk) : "–",
+                                                               result.study->per())
                                                  : result.scene().buildings[b].name);
     }
     return content;

@@ -39,6 +39,7 @@ struct Study {
     Exposures exposures;
     [[nodiscard]] std::size_t run_count() const;
     [[nodiscard]] double frequency(std::size_t scenario) const;
+    [[nodiscard]] const char* per() const { return per_event ? "per event" : "per year"; }
 };
 
 /// What is wanted of a scene.
