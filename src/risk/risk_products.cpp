@@ -188,6 +188,19 @@ Status write_vectors(const StudyResult& result, const fs::path& folder, products
     return styles.empty() ? Status() : geo::write_geopackage_styles(file.string(), styles);
 }
 
+/// Removes what an earlier call wrote of options or maps that this one may not have.
+void remove_earlier(const fs::path& folder) {
+    std::error_code error;
+    for (const fs::directory_entry& entry : fs::directory_iterator(folder, error)) {
+        const std::string stem = entry.path().stem().string(), extension = entry.path().extension().string();
+        const bool map = stem.starts_with("individual_risk") || stem.starts_with("debris_frequency");
+        const bool table = stem == "fn" || stem == "options" || stem == "differences";
+        if ((map && (extension == ".tif" || extension == ".qml")) || (table && extension == ".csv")) {
+            fs::remove(entry.path(), error);
+        }
+    }
+}
+
 }  // namespace
 
 const params::OptionSpec* StudyResult::option(std::size_t index) const {
@@ -244,6 +257,7 @@ report::HazardMap individual_style(const StudyResult& result, std::size_t option
 }
 
 Status write_study(const StudyResult& result, const fs::path& folder) {
+    remove_earlier(folder);
     products::LayerDefinition layers(result.scene().spec.scene.title, result.scene().crs.wkt);
     TALUS_TRY(write_vectors(result, folder, layers));
     for (std::size_t k = 0; k < result.outcomes.size(); ++k) {

@@ -78,9 +78,13 @@ Result<Part> make_part(const StudyRequest& request, const scene::Scene& base, co
     auto runs = ensemble::PlannedRuns::make(plan, part.source, base);
     if (!runs) return about(runs.error());
     part.runs = std::make_shared<const ensemble::PlannedRuns>(*std::move(runs));
+    // Its number in the scene, so that some of the options share their runs with all of them.
+    const auto& all = base.spec.options;
+    const auto place = std::find_if(all.begin(), all.end(), [&](const auto& o) { return o.name == part.option; });
+    const auto number = part.option.empty() ? 0 : place - all.begin() + 1;
     const std::string name = part.option.empty() ? "as_it_is" : folder_name(part.option);
     part.folder =
-        request.folder / fmt::format("{}_{}", option, name) / fmt::format("{}_{}", scenario, folder_name(of.name));
+        request.folder / fmt::format("{}_{}", number, name) / fmt::format("{}_{}", scenario, folder_name(of.name));
     part.definition = ensemble_definition(*part.runs, part.source, *part.scene, request.scene_name);
     return part;
 }
@@ -168,6 +172,20 @@ Grid<float> deeper_than(double depth, const Grid<float>& peak_depth) {
     return made;
 }
 
+/// Maps of a sum have the same cells. `first`: of the first map, which is taken where there is none yet.
+Status check_cells(const Part& part, const ensemble::RunRecord& record, GridGeometry& first) {
+    const GridGeometry& g = record.geometry;
+    if (g.size() == 0) return {};
+    if (first.size() == 0) first = g;
+    const double east = (g.x_min - first.x_min) / first.cell, north = (g.y_min - first.y_min) / first.cell;
+    const bool aligned = std::abs(east - std::round(east)) < 1e-3 && std::abs(north - std::round(north)) < 1e-3;
+    if (aligned && std::abs(g.cell - first.cell) < 1e-9 * first.cell) return {};
+    return Error{
+        fmt::format("{}: run {} has maps of other cells than the runs before; no factor and no risk_scenario may "
+                    "change the cells of the maps",
+                    part.folder.string(), record.run)};
+}
+
 }  // namespace
 
 std::size_t Study::run_count() const {
@@ -205,6 +223,7 @@ Result<OptionOutcome> read_outcome(const Study& study, const std::string& option
     OptionOutcome made;
     made.option = option;
     MapSum debris, individual;
+    GridGeometry cells;  // of the first map
     std::vector<ensemble::RunRecord> records;
     for (const Part& part : study.parts) {
         if (part.option != option) continue;
@@ -226,6 +245,7 @@ Result<OptionOutcome> read_outcome(const Study& study, const std::string& option
                                      complete, own.size(), own.front().complete() ? "" : ": " + own.front().fault)};
         }
         const double weight = scenario.frequency / static_cast<double>(complete);
+        for (const ensemble::RunRecord& record : own) TALUS_TRY(check_cells(part, record, cells));
         for (ensemble::RunRecord& record : own) {
             if (!record.complete()) {
                 ++made.failed;

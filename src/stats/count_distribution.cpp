@@ -13,6 +13,12 @@ void CountDistribution::add(const std::vector<double>& other) {
     for (std::size_t i = 0; i < probability_.size(); ++i) {
         for (std::size_t k = 0; k < other.size(); ++k) sum[i + k] += probability_[i] * other[k];
     }
+    // A tail that no sum of frequencies can show; it would make long lists of many persons.
+    double tail = sum.back();
+    while (sum.size() > 1 && tail < 1e-18) {
+        sum.pop_back();
+        tail += sum.back();
+    }
     probability_ = std::move(sum);
 }
 
