@@ -24,7 +24,8 @@ RunOutcome outcome_of(const Exposures& exposures, const std::vector<observe::Bui
         const observe::BuildingImpact& impact = buildings[next++];
         made.hit = impact.hit;
         if (!impact.hit) continue;
-        const Intensity intensity{impact.peak_depth, impact.peak_speed, impact.peak_impact_pressure};
+        const double speed = std::isnan(impact.peak_speed) ? 0 : impact.peak_speed;
+        const Intensity intensity{impact.peak_depth, speed, impact.peak_impact_pressure};
         if (exposed.damage != nullptr) made.damage = exposed.damage->at(intensity);
         if (exposed.death != nullptr) made.death = exposed.death->at(intensity);
     }

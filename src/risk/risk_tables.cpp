@@ -4,6 +4,8 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <cstdlib>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -27,11 +29,15 @@ std::string small(double value) {
     const double size = std::abs(value);
     if (size >= 1e-3 && size < 1e6) return significant(value, 2);
     static constexpr std::array<const char*, 10> raised = {"⁰", "¹", "²", "³", "⁴", "⁵", "⁶", "⁷", "⁸", "⁹"};
-    const int exponent = static_cast<int>(std::floor(std::log10(size) + 1e-12));
+    const std::string text = fmt::format("{:.1e}", value);
+    const std::size_t e = text.find('e');
+    const int exponent = std::stoi(text.substr(e + 1));
     std::string power = exponent < 0 ? "⁻" : "";
-    for (const char digit : std::to_string(std::abs(exponent)))
+    for (const char digit : std::to_string(std::abs(exponent))) {
         power += raised.at(static_cast<std::size_t>(digit - '0'));
-    return fmt::format("{} × 10{}", fixed(value / std::pow(10, exponent), 1), power);
+    }
+    return fmt::format("{}{} × 10{}", value < 0 ? "−" : "", text.substr(value < 0 ? 1 : 0, e - (value < 0 ? 1 : 0)),
+                       power);
 }
 
 stats::Estimate impact_of(const StudyResult& result, const ItemRisk& item) {

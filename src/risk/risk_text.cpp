@@ -15,12 +15,23 @@ namespace {
 
 using report::plain;
 
+/// Money and numbers of people: without an exponent.
+std::string whole(double value) {
+    return value >= 1e5 ? report::fixed(value, 0) : plain(value);
+}
+
+/// Its end of a sentence, with one full stop.
+std::string sourced(const std::string& source, const char* before) {
+    if (source.empty()) return "; no source is stated.";
+    return before + source + (source.ends_with('.') ? "" : ".");
+}
+
 void add_exposures(const scene::Scene& scene, std::vector<std::string>& list) {
     for (const params::ExposureSpec& e : scene.spec.exposures) {
         std::vector<std::string> parts;
         const auto add = [&](const char* what, const std::optional<double>& given, const std::string& attribute,
                              const std::string& unit) {
-            if (given) parts.push_back(fmt::format("{} {}{}", what, plain(*given), unit));
+            if (given) parts.push_back(fmt::format("{} {}{}", what, whole(*given), unit));
             if (!attribute.empty()) parts.push_back(fmt::format("{} from the attribute {}", what, attribute));
         };
         add("value", e.value, e.value_attribute, " " + scene.spec.risk.currency);
@@ -36,8 +47,8 @@ void add_exposures(const scene::Scene& scene, std::vector<std::string>& list) {
         const std::string which = road                  ? "the road"
                                   : e.buildings.empty() ? "all buildings"
                                                         : fmt::format("{}", fmt::join(e.buildings, ", "));
-        list.push_back(fmt::format("Exposure “{}” ({}): {}{}.", e.name, which, fmt::join(parts, "; "),
-                                   e.source.empty() ? "; no source is stated" : ". " + e.source));
+        list.push_back(
+            fmt::format("Exposure “{}” ({}): {}{}", e.name, which, fmt::join(parts, "; "), sourced(e.source, ". ")));
     }
 }
 
@@ -45,10 +56,9 @@ void add_options(const StudyResult& result, std::vector<std::string>& list) {
     for (std::size_t k = 1; k < result.risks.size(); ++k) {
         const params::OptionSpec& o = *result.option(k);
         list.push_back(fmt::format(
-            "Option “{}”: cost {} {}, life {} years, interest {} % a year, upkeep {} {} a year{}.{}", o.name,
-            plain(o.cost), result.scene().spec.risk.currency, plain(o.life), plain(100 * o.interest_rate),
-            plain(o.upkeep), result.scene().spec.risk.currency,
-            o.source.empty() ? "; no source is stated" : "; " + o.source,
+            "Option “{}”: cost {} {}, life {} years, interest {} % a year, upkeep {} {} a year{}{}", o.name,
+            whole(o.cost), result.scene().spec.risk.currency, plain(o.life), plain(100 * o.interest_rate),
+            whole(o.upkeep), result.scene().spec.risk.currency, sourced(o.source, ". "),
             o.removed_buildings.empty() ? ""
                                         : fmt::format(" It removes {}; their persons and value are then out of reach.",
                                                       fmt::join(o.removed_buildings, ", "))));
@@ -68,10 +78,9 @@ std::vector<std::string> assumptions_of(const StudyResult& result) {
     } else {
         for (std::size_t s = 0; s < study.scenarios.size(); ++s) {
             const params::RiskScenarioSpec& of = study.scenarios[s];
-            list.push_back(fmt::format("Events of the class “{}” come {} times a year on average, every {} years{}.",
+            list.push_back(fmt::format("Events of the class “{}” come {} times a year on average, every {} years{}",
                                        of.name, report::significant(study.frequency(s), 3),
-                                       report::significant(1 / study.frequency(s), 3),
-                                       of.source.empty() ? "; no source is stated" : ": " + of.source));
+                                       report::significant(1 / study.frequency(s), 3), sourced(of.source, ". ")));
         }
         list.emplace_back(
             "Classes of events exclude each other, so their frequencies add; an event of one class is none of "

@@ -172,14 +172,15 @@ TEST_F(StudyTest, reads_roads_by_their_length) {
 TEST_F(StudyTest, refuses_hostile_exposures_in_one_sentence) {
     const std::string head = "[[exposure]]\nname = \"homes\"\n";
     EXPECT_THAT(error_of(head + "persons = 3\npresence = 1.2\ndeath_curve = \"finlay_1999_building\"\n"),
-                AllOf(HasSubstr("exposure[0].presence = 1.2 is refused; it must be 0 to 1"), Not(HasSubstr("\n"))));
+                AllOf(HasSubstr("exposure[0].presence = 1.2 is refused; it must be a number from 0 to 1"),
+                      Not(HasSubstr("\n"))));
     EXPECT_THAT(error_of(head + "persons = 3\npresence = 1\ndeath_curve = \"nobody_1900\"\n"),
                 HasSubstr("exposure[0].death_curve = \"nobody_1900\": there is no such vulnerability curve of death; "
                           "curves: finlay_1999_building"));
     EXPECT_THAT(error_of(head + "buildings = [\"palace\"]\nvalue = 1\ndamage_curve = \"jakob_2012_intensity\"\n"),
                 HasSubstr("exposure[0].buildings: there is no building \"palace\"; buildings: near, far"));
     EXPECT_THAT(error_of(head + "value = -3\ndamage_curve = \"jakob_2012_intensity\"\n"),
-                HasSubstr("exposure[0].value = -3 is refused; it must be at least 0"));
+                HasSubstr("exposure[0].value = -3 is refused; it must be a number at least 0"));
     EXPECT_THAT(error_of(head + "value_attribute = \"worth\"\ndamage_curve = \"jakob_2012_intensity\"\n"),
                 HasSubstr("building \"near\" has worth = -5; it must be a number of at least 0"));
     EXPECT_THAT(error_of(head + "value_attribute = \"price\"\ndamage_curve = \"jakob_2012_intensity\"\n"),
@@ -196,7 +197,7 @@ TEST_F(StudyTest, refuses_hostile_options_and_classes_of_events_in_one_sentence)
     const std::string other =
         "[[option]]\nname = \"other\"\nbarriers = [\"wall\"]\nlife_years = 5\ninterest_rate = 0\n";
     EXPECT_THAT(error_of(homes, other + "cost = -1\nupkeep_per_year = 0\n"),
-                HasSubstr("option[2].cost = -1 is refused; it must be at least 0"));
+                HasSubstr("option[2].cost = -1 is refused; it must be a number at least 0"));
     EXPECT_THAT(error_of(homes, other + "cost = 1\n"), HasSubstr("option[2].upkeep_per_year is missing"));
     EXPECT_THAT(error_of(homes, "[[risk_scenario]]\nname = \"none\"\n"),
                 HasSubstr("risk_scenario[2].annual_frequency: exactly one of annual_frequency, return_period_years"));
