@@ -14,7 +14,7 @@ methods named after them are used.
 """
 
 from ._library import FaultError, InputError, TalusError, version
-from .ensembles import Calibration, Ensemble, calibrate, ensemble
+from .ensembles import Calibration, Ensemble, Risk, calibrate, ensemble, options, risk
 from .maps import UNITS, Map, read_geotiff, write_geotiff
 from .measures import Energy, Front, Gauge, RunOut, Structure
 from .simulation import Building, Phase, Simulation
@@ -24,6 +24,6 @@ from .table import Table
 __version__ = version
 __all__ = [
     "UNITS", "Building", "Calibration", "Energy", "Ensemble", "FaultError", "Front", "Gauge", "InputError", "Map", "Phase",
-    "Result", "RunOut", "Simulation", "Structure", "Study", "Table", "TalusError", "calibrate", "ensemble", "read_geotiff",
-    "run", "study", "write_geotiff",
+    "Result", "Risk", "RunOut", "Simulation", "Structure", "Study", "Table", "TalusError", "calibrate", "ensemble", "options",
+    "read_geotiff", "risk", "run", "study", "write_geotiff",
 ]  # fmt: skip

@@ -1,4 +1,5 @@
-"""Many runs with values that vary, and the values that explain field observations: `talus ensemble` and `talus calibrate`."""
+"""Many runs with values that vary, the values that explain field observations, and what is at risk: `talus ensemble`,
+`talus calibrate`, `talus risk` and `talus options`."""
 
 from __future__ import annotations
 
@@ -62,7 +63,7 @@ class _Folder:
         return found
 
 
-_Made = TypeVar("_Made", "Ensemble", "Calibration")
+_Made = TypeVar("_Made", "Ensemble", "Calibration", "Risk")
 
 
 class Ensemble(_Folder):
@@ -157,6 +158,64 @@ class Calibration(_Folder):
         return f"<talus.Calibration: {self.numbers['complete']} runs, least misfit {self.misfit:.4g} at {best}, in {self.folder}>"
 
 
+class Risk(_Folder):
+    """What is at risk, from risk() or options(), or from the folder that `talus risk` or `talus options` wrote."""
+
+    def __init__(self, folder: str | os.PathLike[str]) -> None:
+        super().__init__(folder)
+        self.numbers = self._facts = self._json("results.json")  #: all numbers, as docs/risk.md has them
+        if self.numbers.get("format") not in ("talus risk", "talus options"):
+            raise InputError(f"{self.folder}: is not the folder of a risk or of options")
+
+    @property
+    def total(self) -> dict[str, Any]:
+        """Of all that is exposed, as it is: impacts, loss, deaths, individual_risk; each with value, low and high."""
+        found: dict[str, Any] = self.numbers["options"][0]["total"]
+        return found
+
+    @property
+    def items(self) -> Table:
+        """A row per option and building or road."""
+        return self._table("risk.csv")
+
+    @property
+    def fn(self) -> Table:
+        """The F-N curve of each option: events in a year with so many deaths or more."""
+        return self._table("fn.csv")
+
+    @property
+    def options(self) -> Table:
+        """Cost and difference from the ground as it is, a row per option: of options()."""
+        return self._table("options.csv")
+
+    @property
+    def assumptions(self) -> list[str]:
+        """On which the numbers rest."""
+        return [str(text) for text in self.numbers["assumptions"]]
+
+    @property
+    def limits(self) -> list[str]:
+        """What the numbers leave out."""
+        return [str(text) for text in self.numbers["limits"]]
+
+    @property
+    def map_names(self) -> list[str]:
+        """Of the maps: "individual_risk", "debris_frequency", ..."""
+        return sorted(path.stem for path in self.folder.glob("*.tif"))
+
+    def map(self, name: str) -> Map:
+        """The map of that name."""
+        if arguments.text("name", name).decode() not in self.map_names:
+            raise InputError(f"name = {name!r}: must be one of {', '.join(self.map_names)}")
+        return read_geotiff(self.folder / f"{name}.tif")
+
+    def __repr__(self) -> str:
+        per, deaths = self.numbers["per"], self.total["deaths"]
+        hit = f"{self.total['impacts']['value']:.3g} impacts per {per}"
+        lost = "" if deaths is None else f", {deaths['value']:.3g} deaths per {per}"
+        return f"<talus.Risk: {hit}{lost}, in {self.folder}; {self.verdict['text']}>"
+
+
 def ensemble(
     scene: Scene = None,
     vary: Vary | None = None,
@@ -228,6 +287,62 @@ def calibrate(
     return _said(_run(words, folder, progress, _share_of_search, Calibration))
 
 
+def risk(
+    scene: Scene = None,
+    vary: Vary | None = None,
+    settings: Settings | None = None,
+    *,
+    runs: int = 64,
+    design: str = "latin_hypercube",
+    seed: int = 1,
+    folder: str | os.PathLike[str] | None = None,
+    threads: int | None = None,
+    progress: Progress | bool | None = None,
+) -> Risk:
+    """Counts what is at risk in a scene, as `talus risk` does (docs/risk.md): an ensemble for each [[risk_scenario]], and what
+    it does to each [[exposure]]. `runs`: of each class of events. The rest as of ensemble(). Needs the program."""
+    return _risk("risk", scene, vary, settings, runs, design, seed, (), folder, threads, progress)
+
+
+def options(
+    scene: Scene = None,
+    vary: Vary | None = None,
+    settings: Settings | None = None,
+    *,
+    only: Sequence[str] = (),
+    runs: int = 64,
+    design: str = "latin_hypercube",
+    seed: int = 1,
+    folder: str | os.PathLike[str] | None = None,
+    threads: int | None = None,
+    progress: Progress | bool | None = None,
+) -> Risk:
+    """Compares the options of a scene with the ground as it is, as `talus options` does (docs/risk.md). `only`: names of
+    options; none: all. The rest as of risk(). Needs the program."""
+    return _risk("options", scene, vary, settings, runs, design, seed, only, folder, threads, progress)
+
+
+def _risk(
+    command: str,
+    scene: Scene,
+    vary: Vary | None,
+    settings: Settings | None,
+    runs: int,
+    design: str,
+    seed: int,
+    only: Sequence[str],
+    folder: str | os.PathLike[str] | None,
+    threads: int | None,
+    progress: Progress | bool | None,
+) -> Risk:
+    words = [command, *_common(scene, vary, settings, threads, needed=True)]
+    words += ["--runs", str(arguments.count("runs", runs)), "--seed", str(arguments.count("seed", seed))]
+    words += ["--design", arguments.text("design", design).decode()]
+    for name in [only] if isinstance(only, str) else only:
+        words += ["--option", arguments.text("only", name).decode()]
+    return _said(_run(words, folder, progress, lambda event: float(event.get("share_done", 0)), Risk))
+
+
 def _share_of_search(event: Mapping[str, Any]) -> float:
     return float(event["runs_done"]) / max(float(event["runs_at_most"]), 1.0) if "runs_done" in event else 0.0
 
@@ -294,5 +409,5 @@ def _bar(share: float) -> None:
 
 def _said(made: _Made) -> _Made:
     for warning in made.verdict["warnings"]:
-        warnings.warn(warning, stacklevel=3)
+        warnings.warn(warning, stacklevel=4 if isinstance(made, Risk) else 3)
     return made

@@ -241,3 +241,54 @@ class Calibrate(ManyRuns):
         results = self.run_many("calibrate", arguments, folder, feedback)
         results["BEST_FIT"] = os.path.join(folder, "best_fit", "scene.toml")
         return results
+
+
+class RiskOf(ManyRuns):
+    """Risk of a scene, or options compared: both need a scene file that states events and exposure."""
+
+    MAPS = {"INDIVIDUAL_RISK": ("individual_risk", "Individual risk"), "DEBRIS": ("debris_frequency", "Debris, events per year")}
+
+    def initAlgorithm(self, configuration=None):
+        self.add_scene()
+        self.add_factors("What varies, a line each: section.key=low:high", 64)
+        self.add_advanced(number("SEED", "Seed of the design", whole=True))
+        self.add_output("Results")
+        for name, (_, title) in self.MAPS.items():
+            self.addOutput(QgsProcessingOutputRasterLayer(name, title))
+        self.addOutput(QgsProcessingOutputVectorLayer("BUILDING_RISK", "Individual risk in buildings"))
+
+    def processAlgorithm(self, parameters, context, feedback):
+        arguments = self.scene_arguments(parameters, context, feedback) + self.factor_arguments(parameters, context)
+        arguments += self.option(parameters, "SEED", context)
+        folder = self.output_folder(parameters, context)
+        results = self.run_many(self.NAME, arguments, folder, feedback)
+        # There is no map of individual risk without a curve for it, and none where no run comes.
+        for name, (file, _) in self.MAPS.items():
+            path = os.path.join(folder, file + ".tif")
+            if os.path.exists(path):
+                results[name] = path
+        if os.path.exists(os.path.join(folder, "risk.gpkg")):
+            results["BUILDING_RISK"] = os.path.join(folder, "risk.gpkg") + "|layername=buildings"
+        if self.parameterAsBool(parameters, "LOAD", context):
+            self.definitions = {"": os.path.join(folder, "results.qlr")}
+        return results
+
+
+class Risk(RiskOf):
+    NAME, TITLE = "risk", "Risk"
+    HELP = (
+        "Counts what is at risk in a year: impact, loss and deaths per building and road, individual risk with a map, and "
+        "the F-N curve. The scene file states how often events come ([[risk_scenario]]) and what is exposed ([[exposure]]). "
+        "What varies is a line each, such as\nmaterial.friction_coefficient=0.15:0.3\n"
+        "The same folder resumes where an earlier call stopped.\n\n" + SCENE_HELP
+    )
+
+
+class Options(RiskOf):
+    NAME, TITLE = "options", "Options"
+    HELP = (
+        "Compares the options of a scene file ([[option]]: barriers, zones and removed buildings) with the ground as it is: "
+        "hazard, impact and risk side by side with differences, and cost against risk averted. Every option has the same "
+        "draws. What varies is a line each, such as\nmaterial.friction_coefficient=0.15:0.3\n"
+        "The same folder resumes where an earlier call stopped.\n\n" + SCENE_HELP
+    )

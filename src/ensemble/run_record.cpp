@@ -52,12 +52,17 @@ Json building_json(const observe::BuildingImpact& b) {
             number_or_null<Json>(b.peak_force),
             number_or_null<Json>(b.peak_impact_pressure),
             number_or_null<Json>(b.peak_depth),
-            number_or_null<Json>(b.peak_dynamic_pressure)};
+            number_or_null<Json>(b.peak_dynamic_pressure),
+            number_or_null<Json>(b.peak_speed)};
 }
 
 observe::BuildingImpact building_of(const Json& j) {
-    return {j.at(0).get<std::string>(), j.at(1).get<bool>(),      number_or_never(j.at(2)), number_or_never(j.at(3)),
-            number_or_never(j.at(4)),   number_or_never(j.at(5)), number_or_never(j.at(6))};
+    observe::BuildingImpact b{j.at(0).get<std::string>(), j.at(1).get<bool>(),      number_or_never(j.at(2)),
+                              number_or_never(j.at(3)),   number_or_never(j.at(4)), number_or_never(j.at(5)),
+                              number_or_never(j.at(6))};
+    // Records of earlier versions lack it.
+    b.peak_speed = j.size() > 7 ? number_or_never(j.at(7)) : observe::never;
+    return b;
 }
 
 Json header_json(const std::string& plan, const RunRecord& r) {

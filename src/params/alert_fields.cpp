@@ -1,4 +1,3 @@
-#include <algorithm>
 #include <optional>
 #include <string>
 #include <vector>
@@ -9,15 +8,6 @@
 
 namespace talus::params {
 namespace {
-
-/// Messages and reports name triggers and alarms.
-template <class Spec>
-std::optional<Violation> name_twice(const Spec& entry, const std::vector<Spec>& all) {
-    const auto same =
-        std::count_if(all.begin(), all.end(), [&](const Spec& other) { return other.name == entry.name; });
-    if (same == 1) return {};
-    return Violation{"name", fmt::format(" = \"{}\" is refused; {} entries have that name", entry.name, same)};
-}
 
 std::optional<Violation> incomplete(const TriggerSpec& trigger) {
     if (trigger.volume_limit && trigger.release.empty()) {

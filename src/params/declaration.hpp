@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -196,6 +197,16 @@ class Declaration {
     return {"solver.internal_friction", "stress", "friction by pairs has no such law", even_at_0};
 }
 
+/// Of entries that results, messages or the command line name.
+template <class Spec>
+[[nodiscard]] std::optional<Violation> name_twice(const Spec& entry, const std::vector<Spec>& all) {
+    const auto same =
+        std::count_if(all.begin(), all.end(), [&](const Spec& other) { return other.name == entry.name; });
+    if (same == 1) return {};
+    return Violation{"name",
+                     " = \"" + entry.name + "\" is refused; " + std::to_string(same) + " entries have that name"};
+}
+
 /// Sources of debris.
 [[nodiscard]] Section declare_release();
 [[nodiscard]] Section declare_inflow();
@@ -222,5 +233,11 @@ class Declaration {
 /// What a live run listens to, and what it tells.
 [[nodiscard]] Section declare_trigger();
 [[nodiscard]] Section declare_alarm();
+
+/// Options, and what is at risk.
+[[nodiscard]] Section declare_option();
+[[nodiscard]] Section declare_risk();
+[[nodiscard]] Section declare_risk_scenario();
+[[nodiscard]] Section declare_exposure();
 
 }  // namespace talus::params

@@ -24,6 +24,16 @@ Section declare_scene() {
     s.key("assumptions", "", &SceneInfo::assumptions, anything(), "What was assumed, one sentence each.");
     s.key("sources", "", &SceneInfo::sources, anything(),
           "Where facts and data come from, with the attribution their licences ask for.");
+    s.text("option", &SceneInfo::option, "the ground as it is, without any option",
+           "Name of the [[option]] whose measures are in force.");
+    s.rule([](const SceneInfo& info, const SceneSpec& scene, double) -> std::optional<Violation> {
+        std::vector<std::string> names;
+        for (const OptionSpec& option : scene.options) names.push_back(option.name);
+        if (info.option.empty() || std::find(names.begin(), names.end(), info.option) != names.end()) return {};
+        return Violation{"option",
+                         fmt::format(" = \"{}\": there is no such option; options of the scene: {}", info.option,
+                                     names.empty() ? "none" : fmt::format("{}", fmt::join(names, ", ")))};
+    });
     return s.take();
 }
 
@@ -293,6 +303,10 @@ const std::vector<Section>& scene_sections() {
         all.push_back(declare_variant());
         all.push_back(declare_trigger());
         all.push_back(declare_alarm());
+        all.push_back(declare_option());
+        all.push_back(declare_risk());
+        all.push_back(declare_risk_scenario());
+        all.push_back(declare_exposure());
         return all;
     }();
     return sections;

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "core/geometry.hpp"
+#include "params/risk_spec.hpp"
 
 /// The content of a scene file, in SI units and radians. Plain data: the field table (fields.hpp) declares key, unit,
 /// default, range and help of every member once, and parser, --help, documentation and manifest are made from it.
@@ -18,6 +19,7 @@ struct SceneInfo {
     bool reconstruction = false;           ///< the inputs are reconstructed, not surveyed: stated on every product
     std::vector<std::string> assumptions;  ///< one sentence each, printed in the report
     std::vector<std::string> sources;      ///< sources of facts and data, printed in the report
+    std::string option;                    ///< whose measures are in force; empty: those of no option
 };
 
 /// `[report]`: what a report says of itself to be signed. Empty: not said.
@@ -483,6 +485,10 @@ struct SceneSpec {
     std::vector<VariantSpec> variants;
     std::vector<TriggerSpec> triggers;
     std::vector<AlarmSpec> alarms;
+    std::vector<OptionSpec> options;
+    RiskSpec risk;
+    std::vector<RiskScenarioSpec> risk_scenarios;
+    std::vector<ExposureSpec> exposures;
 };
 
 }  // namespace talus::params

@@ -171,6 +171,10 @@ constexpr std::array keys = {
     // Of the live twin, whose runs are of particles; a run takes no notice of them, whatever its model.
     DepthAveragedKey{"trigger.*", used, ""},
     DepthAveragedKey{"alarm.*", used, ""},
+    DepthAveragedKey{"option.*", used, ""},
+    DepthAveragedKey{"risk.*", used, ""},
+    DepthAveragedKey{"risk_scenario.*", used, ""},
+    DepthAveragedKey{"exposure.*", used, ""},
 };
 
 }  // namespace

@@ -18,6 +18,7 @@
 #include "geo/terrain_frame.hpp"
 #include "scene/grid_cell.hpp"
 #include "scene/limits.hpp"
+#include "scene/options.hpp"
 #include "scene/output_defaults.hpp"
 #include "scene/particle_spacing.hpp"
 #include "scene/plausibility.hpp"
@@ -218,6 +219,7 @@ Result<Scene> assemble_scene(const ParsedScene& parsed) {
     TALUS_TRY(load_zoom(parsed, scene));
     TALUS_TRY(check_alerts(parsed, scene));
     TALUS_TRY(particles ? check_limits(parsed, scene) : check_depth_averaged(parsed, scene));
+    TALUS_TRY(apply_option(parsed, scene));
     settle_geoid_height(scene);
     const ReachableGround reachable =
         reachable_ground(scene.terrain, scene.releases, travel_angle_deg / degrees_per_radian);

@@ -20,7 +20,9 @@ namespace {
 
 using nlohmann::json;
 
-constexpr std::array kind_names = {"ensemble", "calibration", "validation"};
+constexpr std::array kind_names = {"ensemble", "calibration", "validation", "risk", "options"};
+/// The command of each.
+constexpr std::array command_names = {"ensemble", "calibrate", "validate", "risk", "options"};
 constexpr std::array state_names = {"waiting", "running", "cancelling", "done", "cancelled", "interrupted", "failed"};
 constexpr std::size_t most_cases = 200;
 
@@ -144,6 +146,10 @@ Result<ensemble::Factor> read_factor(const json& entry, const char* list,
     return factor;
 }
 
+bool is_risk(JobKind kind) {
+    return kind == JobKind::risk || kind == JobKind::options;
+}
+
 const char* job_kind_name(JobKind kind) {
     return kind_names[static_cast<std::size_t>(kind)];
 }
@@ -162,7 +168,8 @@ Result<WantedJob> read_wanted_job(const json& body) {
     TALUS_ASSIGN(const std::string kind, name_in(body, "kind"));
     const auto known = position(kind_names, kind);
     if (!known) {
-        return Error{fmt::format("kind = {}: must be ensemble, calibration or validation", twin::shown(body["kind"]))};
+        return Error{
+            fmt::format("kind = {}: must be one of {}", twin::shown(body["kind"]), fmt::join(kind_names, ", "))};
     }
     wanted.kind = static_cast<JobKind>(*known);
     if (wanted.kind == JobKind::validation) {
@@ -179,6 +186,14 @@ Result<WantedJob> read_wanted_job(const json& body) {
     TALUS_ASSIGN(wanted.ensemble.runs, read_runs(body, wanted.ensemble.runs));
     TALUS_ASSIGN(wanted.calibration.search.runs, read_runs(body, wanted.calibration.search.runs));
     TALUS_TRY(read_design(body, wanted.ensemble));
+    using enum stats::DesignKind;
+    const bool sample = wanted.ensemble.design == latin_hypercube || wanted.ensemble.design == monte_carlo ||
+                        wanted.ensemble.design == sobol;
+    if (is_risk(wanted.kind) && !sample) {
+        return Error{
+            fmt::format("design = {}: must be latin_hypercube, monte_carlo or sobol, whose points are a sample",
+                        twin::shown(body["design"]))};
+    }
     return Result<WantedJob>(std::move(wanted));
 }
 
@@ -197,10 +212,10 @@ std::vector<std::string> arguments_of(const WantedJob& wanted, const std::filesy
         words.emplace_back("--known");
         return words;
     }
-    words = {wanted.kind == JobKind::ensemble ? "ensemble" : "calibrate"};
+    words = {command_names.at(static_cast<std::size_t>(wanted.kind))};
     if (!scene.empty()) words.push_back(scene.string());
     for (const std::string& factor : wanted.factors) words.insert(words.end(), {"--vary", factor});
-    if (wanted.kind == JobKind::ensemble) {
+    if (wanted.kind != JobKind::calibration) {
         words.insert(words.end(), {"--runs", std::to_string(wanted.ensemble.runs)});
         words.insert(words.end(), {"--design", stats::design_name(wanted.ensemble.design)});
     } else {

@@ -13,12 +13,15 @@
 #include "core/result.hpp"
 #include "ensemble/plan.hpp"
 
-/// A job of the start page: an ensemble, a calibration or a validation that a command of the program computes.
+/// A job of the start page: an ensemble, a calibration, a validation, risk or options that a command of the program
+/// computes.
 namespace talus::serve {
 
-enum class JobKind { ensemble, calibration, validation };
+enum class JobKind { ensemble, calibration, validation, risk, options };
 enum class JobState { waiting, running, cancelling, done, cancelled, interrupted, failed };
 
+/// Counts what is at risk, or compares options.
+[[nodiscard]] bool is_risk(JobKind kind);
 [[nodiscard]] const char* job_kind_name(JobKind kind);
 [[nodiscard]] const char* job_state_name(JobState state);
 /// Waiting, running or cancelling.

@@ -12,6 +12,7 @@
 #include "core/try.hpp"
 #include "ensemble/predict.hpp"
 #include "params/fields.hpp"
+#include "risk/study.hpp"
 #include "run/cost.hpp"
 #include "scene/builtin.hpp"
 #include "scene/depth_averaged_keys.hpp"
@@ -73,6 +74,26 @@ void add_material(const params::SceneSpec& spec, json& list) {
     }
 }
 
+template <class Spec>
+json names_of(const std::vector<Spec>& entries) {
+    json names = json::array();
+    for (const Spec& entry : entries) names.push_back(entry.name);
+    return names;
+}
+
+/// As the commands of risk and options plan it.
+Status check_risk(const WantedJob& wanted, const Loaded& loaded) {
+    const params::SceneSpec& spec = loaded.scene.spec;
+    const bool compare = wanted.kind == JobKind::options;
+    if (compare && spec.options.empty()) return Error{"this scene has no [[option]]; there is nothing to compare"};
+    std::vector<std::string> options = {compare ? "" : spec.scene.option};
+    for (const params::OptionSpec& option : spec.options) {
+        if (compare) options.push_back(option.name);
+    }
+    TALUS_TRY(risk::plan_study({wanted.ensemble, loaded.source, "", std::move(options), {}, !compare}));
+    return {};
+}
+
 /// Thickness or volume, whichever the scene gives.
 void add_releases(const params::SceneSpec& spec, json& list) {
     const params::Section& section = *params::find_section("release");
@@ -101,6 +122,8 @@ json form_json(const scene::Scene& scene) {
     return {{"title", scene.spec.scene.title},
             {"parameters", parameters},
             {"observations", observations},
+            {"events", names_of(scene.spec.risk_scenarios)},
+            {"options", names_of(scene.spec.options)},
             {"limits",
              {{"runs", JobLimits::runs},
               {"ensemble_factors", JobLimits::ensemble_factors},
@@ -182,6 +205,8 @@ void JobForms::check(const WantedJob& wanted, const KnownScene& scene, const Res
             TALUS_ASSIGN(const auto loaded, load(scene));
             if (wanted.kind == JobKind::ensemble) {
                 TALUS_TRY(ensemble::PlannedRuns::make(wanted.ensemble, loaded->source, loaded->scene));
+            } else if (is_risk(wanted.kind)) {
+                TALUS_TRY(check_risk(wanted, *loaded));
             } else {
                 TALUS_TRY(calibrate::plan_calibration(wanted.calibration, loaded->source, loaded->scene));
             }

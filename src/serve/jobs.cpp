@@ -200,9 +200,9 @@ Result<std::string> Jobs::add(const WantedJob& wanted, const std::optional<Known
     job.kind = wanted.kind;
     job.arguments = arguments_of(wanted, scene ? scene->file : fs::path(), folder_ / job.id);
     job.begun_at = utc_now();
-    job.count = wanted.kind == JobKind::ensemble      ? wanted.ensemble.runs
+    job.count = wanted.kind == JobKind::validation    ? wanted.cases.size()
                 : wanted.kind == JobKind::calibration ? wanted.calibration.search.runs
-                                                      : wanted.cases.size();
+                                                      : wanted.ensemble.runs;
     if (scene) {
         job.scene = scene->id;
         job.title = scene->title;

@@ -4,6 +4,7 @@
 
 #include "core/try.hpp"
 #include "serve/api.hpp"
+#include "serve/option_scenarios.hpp"
 #include "serve/server.hpp"
 
 namespace talus::serve {
@@ -35,6 +36,9 @@ Result<OpenSessionPtr> OpenSession::open(const Thread& thread, const std::shared
         retire(thread, std::move(made));
         return opened.error();
     }
+    // A saved session has its scenarios.
+    auto options_of_scene =
+        scenarios.empty() ? option_scenarios(*scene, options.calibration.source) : std::vector<OptionScenario>();
     const auto shared = std::make_shared<std::vector<OpeningScenario>>(std::move(scenarios));
     // On the server's thread, which may be another one: it follows setups from when all of this is open. The task after
     // it sends the first one again.
@@ -44,11 +48,13 @@ Result<OpenSessionPtr> OpenSession::open(const Thread& thread, const std::shared
             raw->calibrations.follow(setup["observations"]);
         });
     });
-    made->session.loop().post([shared, raw = made.get(), run = options.run](Scenarios& all) {
-        for (OpeningScenario& one : *shared) all.put(one.index, std::move(one.scenario), one.title);
-        raw->session.setup(0, all.setup(0));
-        if (run) all.act(0, {{"action", "run"}}, "", [](const Result<twin::Done>&) {});
-    });
+    made->session.loop().post(
+        [shared, raw = made.get(), run = options.run, options = std::move(options_of_scene)](Scenarios& all) {
+            for (OpeningScenario& one : *shared) all.put(one.index, std::move(one.scenario), one.title);
+            raw->session.setup(0, all.setup(0));
+            offer_options(all, options);
+            if (run) all.act(0, {{"action", "run"}}, "", [](const Result<twin::Done>&) {});
+        });
     return made;
 }
 

@@ -121,6 +121,21 @@ class Gallery(unittest.TestCase):
         hit = {row["name"]: row["probability_hit"] for row in result.table("buildings.csv")}
         self.assertGreater(hit["House 1"], hit["Church"])
 
+    def test_risk(self):
+        out = pathlib.Path(self.folder.name) / "options"
+        arguments = (EXAMPLES / "risk" / "scene.toml", "--vary", "material.friction_coefficient=0.15:0.3", "--runs", 3,
+                     "--threads", 1, "--quiet", "-o", out)  # fmt: skip
+        self.program("options", *arguments)
+        results = json.loads((out / "results.json").read_text(encoding="utf-8"))
+        as_it_is, barrier, _, moved = results["options"]
+        self.between(0.01, as_it_is["total"]["impacts"]["value"], 0.022)
+        self.assertLess(barrier["difference"]["deaths"]["value"], 0)
+        self.assertEqual(next(item for item in moved["items"] if item["name"] == "House 38")["impacts"]["value"], 0)
+        self.assertGreater(moved["cost_per_year"], 0.03 * 8e6)
+        before = (out / "risk.csv").read_bytes()
+        self.program("options", *arguments)  # again: nothing is computed, and it is the same
+        self.assertEqual(before, (out / "risk.csv").read_bytes())
+
     def test_valley(self):
         """Its script makes exactly the committed files."""
         try:

@@ -88,6 +88,23 @@ class EnsembleTest(unittest.TestCase):
         self.assertEqual(found.results["format"], "talus calibration")
         self.assertRegex(repr(found), "^<talus.Calibration: . runs, least misfit .* at material.friction_coefficient = 0.")
 
+    def test_counts_what_is_at_risk_and_compares_options(self):
+        scene = pathlib.Path(__file__).parents[2] / "examples" / "risk" / "scene.toml"
+        call = dict(runs=2, threads=1, settings={"solver.end_time_s": 40})
+        risk = talus.risk(scene, {KEY: (0.15, 0.3)}, **call)
+        self.assertGreater(risk.total["deaths"]["value"], 0)
+        self.assertIn("House 38", risk.items["name"])
+        self.assertIn("individual_risk", risk.map_names)
+        self.assertIn("licensed engineer", risk.limits[-1])
+        self.assertRegex(repr(risk), "^<talus.Risk: .* impacts per year, .* deaths per year, in ")
+        options = talus.options(scene, {KEY: (0.15, 0.3)}, only=["move House 38"], **call)
+        self.assertEqual(list(options.options["option"]), ["move House 38"])
+        self.assertLess(options.options["deaths_per_year"][0], 0)
+        with self.assertRaisesRegex(talus.InputError, "--option dam: there is no such option; options of the scene"):
+            talus.options(scene, {KEY: (0.15, 0.3)}, only="dam", **call)
+        with self.assertRaisesRegex(talus.InputError, r"\[\[risk_scenario\]\] is missing"):
+            talus.risk(None, {KEY: (0.15, 0.3)}, **call)
+
     def test_refuses_in_one_sentence(self):
         for sentence, call in {
             "^vary = None: must be keys of the scene": lambda: talus.ensemble(),

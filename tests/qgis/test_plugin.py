@@ -340,6 +340,18 @@ class Plugin(unittest.TestCase):
         self.assertIn("friction_coefficient", pathlib.Path(results["BEST_FIT"]).read_text())
         self.assertTrue(os.path.getsize(results["REPORT"]) > 0)
 
+    def test_compares_options_and_opens_their_risk(self):
+        scene = pathlib.Path(__file__).parents[2] / "examples" / "risk" / "scene.toml"
+        output = new_output("options")
+        given = {"SCENE": str(scene), "VARY": "material.friction_coefficient=0.15:0.3", "RUNS": 2}
+        results = run("options", {**given, "SETTINGS": "solver.end_time_s=40", "OUTPUT": output})
+        for name in ("INDIVIDUAL_RISK", "DEBRIS"):
+            self.assertTrue(QgsRasterLayer(results[name]).isValid(), name)
+        buildings = QgsVectorLayer(results["BUILDING_RISK"])
+        self.assertEqual(buildings.renderer().classAttribute(), "individual_risk_class")
+        self.assertEqual(buildings.featureCount(), 19)
+        self.assertTrue(os.path.exists(os.path.join(output, "options.csv")))
+
     def test_says_what_is_wrong(self):
         output = {"OUTPUT": new_output("wrong")}
         for given, sentence in (

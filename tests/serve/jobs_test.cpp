@@ -162,7 +162,7 @@ TEST_F(JobsTest, what_the_command_would_refuse_is_refused_at_once_in_a_sentence)
         EXPECT_GE(answer.status, 400) << answer.body;
         return answer.json()["error"].get<std::string>();
     };
-    EXPECT_THAT(error({{"kind", "run"}}), HasSubstr("ensemble, calibration or validation"));
+    EXPECT_THAT(error({{"kind", "run"}}), HasSubstr("must be one of ensemble, calibration, validation, risk, options"));
     EXPECT_THAT(error({{"scene", scene_.scene_file()}}), HasSubstr("nothing of this id"));
     EXPECT_THAT(error({{"runs", 2001}}), HasSubstr("from 1 to 2000"));
     EXPECT_THAT(error({{"factors", json::array()}}), HasSubstr("1 to 8"));

@@ -174,7 +174,7 @@ export interface WantedScene {
   check?: boolean;
 }
 
-export type JobKind = "ensemble" | "calibration" | "validation";
+export type JobKind = "ensemble" | "calibration" | "validation" | "risk" | "options";
 
 /** An ensemble, a calibration or a validation in a process of its own. */
 export interface Job {
@@ -226,6 +226,10 @@ export interface JobForm {
   parameters: Parameter[];
   /** None: the scene cannot be calibrated. */
   observations: string[];
+  /** Classes of events; none: the scene states no risk. */
+  events: string[];
+  /** Of measures. */
+  options: string[];
   /** Of a job. */
   limits: JobLimits;
 }
@@ -293,8 +297,22 @@ export interface WantedValidation {
   cases?: string[];
 }
 
+/** A job that counts what is at risk, or compares options. */
+export interface WantedRisk {
+  /** Which job. */
+  kind: "risk" | "options";
+  /** Id of a scene. */
+  scene: string;
+  /** What varies. */
+  factors: VariedKey[];
+  /** Of each class of events, for each option; absent: as the command has it. */
+  runs?: number;
+  /** How values are drawn; absent: as the command has it. */
+  design?: "latin_hypercube" | "monte_carlo" | "sobol";
+}
+
 /** Body of POST /api/jobs. */
-export type WantedJob = WantedEnsemble | WantedBackAnalysis | WantedValidation;
+export type WantedJob = WantedEnsemble | WantedBackAnalysis | WantedValidation | WantedRisk;
 
 /** What is being opened. */
 export interface Opening {

@@ -11,7 +11,7 @@ export interface JobActions {
   open(job: Job): void;
 }
 
-const names = { ensemble: "Ensemble", calibration: "Calibration", validation: "Validation" } as const;
+const names = { ensemble: "Ensemble", calibration: "Calibration", validation: "Validation", risk: "Risk", options: "Options" } as const;
 const isOpen = (job: Job): boolean => job.state === "waiting" || job.state === "running" || job.state === "cancelling";
 
 /** How far a job is, or how it ended, in a sentence. */

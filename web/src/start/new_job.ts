@@ -1,6 +1,6 @@
-// A new ensemble, calibration or validation: what it varies, how many runs, and how long that takes.
+// A new ensemble, calibration, validation, risk or comparison of options: what it varies, how many runs, and how long that takes.
 import type { Api } from "../protocol/api";
-import type { JobEstimate, JobForm, JobKind, KnownScene, ValidationCase, WantedEnsemble, WantedJob } from "../protocol/start";
+import type { JobEstimate, JobForm, JobKind, KnownScene, ValidationCase, WantedEnsemble, WantedJob, WantedRisk } from "../protocol/start";
 import { bytes } from "../state/format";
 import { firstRange, freeAtFirst } from "../state/misfit";
 import { aboutTime } from "../state/time_left";
@@ -11,12 +11,16 @@ import { rangeRow, rangesOf, type RangeRow } from "../ui/range_row";
 const presets: Record<Exclude<JobKind, "validation">, readonly (readonly [string, number])[]> = {
   ensemble: [["Quick look", 16], ["Usual", 64], ["Thorough", 256]],
   calibration: [["Two values", 60], ["Usual", 100], ["Thorough", 200]],
+  risk: [["Quick look", 16], ["Usual", 64], ["Thorough", 256]],
+  options: [["Quick look", 16], ["Usual", 64], ["Thorough", 256]],
 };
 const designs: readonly (readonly [string, string])[] = [["latin_hypercube", "Latin hypercube"], ["sobol", "Sobol sequence"], ["monte_carlo", "Monte Carlo"],
   ["saltelli", "Sobol indices (Saltelli)"], ["morris", "Elementary effects (Morris)"]];
 const about: Record<JobKind, string> = {
   ensemble: "Many runs of a scene with values from these ranges: probability maps, run-out, hits per building, sensitivity.",
   calibration: "Finds the values that explain the field observations of a scene, with their uncertainty.",
+  risk: "What the events of a scene do to buildings, roads and people in a year: impact, loss, individual and societal risk, with a map.",
+  options: "The same for each option of measures, with the same draws: differences, and cost against risk averted.",
   validation: "Computes cases with known results and compares.",
 };
 const usualCases = "Quick cases: under two minutes on two cores. All cases: about 40 minutes on two cores.";
@@ -45,7 +49,7 @@ export class NewJob {
       ...scenes.filter((scene) => !scene.missing).map((scene) => h("option", { value: scene.id, selected: scene.id === first }, scene.title || "Scene without a title")));
     this.element = h("section", { class: "new-scene new-job", "aria-labelledby": "new-job" },
       h("div", { class: "start-title" }, h("h2", { id: "new-job" }, "New job"), button("Discard", { class: "quiet", onclick: onclose })),
-      choice("Kind of job", [["ensemble", "Ensemble"], ["calibration", "Calibration"], ["validation", "Validation"]], this.kind, (kind: JobKind) => {
+      choice("Kind of job", [["ensemble", "Ensemble"], ["calibration", "Calibration"], ["risk", "Risk"], ["options", "Options"], ["validation", "Validation"]], this.kind, (kind: JobKind) => {
         this.kind = kind;
         this.show();
       }), this.body, this.problem, this.time, h("div", { class: "row new-last" }, h("span", { class: "spring" }), this.begin));
@@ -88,7 +92,7 @@ export class NewJob {
       this.runs.value = String(presets[this.kind][1][1]);
       this.showFactors();
       this.body.replaceChildren(hint, h("label", { class: "row wrap" }, "Scene", this.scene), this.factors,
-        h("div", { class: "row wrap" }, h("label", { class: "row" }, this.kind === "ensemble" ? "Runs" : "Runs at most", this.runs),
+        h("div", { class: "row wrap" }, h("label", { class: "row" }, this.kind === "calibration" ? "Runs at most" : this.ensembles() > 1 ? `Runs, ${this.ensembles()} times` : "Runs", this.runs),
           ...presets[this.kind].map(([name, count]) => button(`${name}: ${count}`, { class: "small", onclick: () => {
             this.runs.value = String(count);
             this.showTime();
@@ -103,6 +107,12 @@ export class NewJob {
     if (this.kind === "calibration" && form.observations.length === 0) {
       return this.factors.replaceChildren(h("p", { class: "empty" }, "This scene has no field observations to calibrate against. Add [[observation]], [[run_up]] or another of the sections in docs/ensembles.md to its file."));
     }
+    if (this.kind === "risk" && form.events.length === 0) {
+      return this.factors.replaceChildren(h("p", { class: "empty" }, "This scene does not say how often events come and what is at risk. Add [[risk_scenario]] and [[exposure]] to its file, as docs/risk.md shows."));
+    }
+    if (this.kind === "options" && form.options.length === 0) {
+      return this.factors.replaceChildren(h("p", { class: "empty" }, "This scene has no options to compare. Add [[option]] to its file, as docs/risk.md shows."));
+    }
     this.rows = form.parameters.map((p) => {
       // An ensemble asks what the scene's own values are uncertain by; a calibration looks for them in a wide range.
       const [low, high] = firstRange(p, p.value);
@@ -112,9 +122,17 @@ export class NewJob {
     });
     const first = this.rows.filter((row) => row.free.checked);
     const others = this.rows.filter((row) => !row.free.checked);
-    this.factors.replaceChildren(h("h3", {}, this.kind === "ensemble" ? "Factors and their ranges" : "Free values and their ranges"), ...first.map((row) => row.element),
+    this.factors.replaceChildren(h("h3", {}, this.kind === "calibration" ? "Free values and their ranges" : "Factors and their ranges"), ...first.map((row) => row.element),
       ...(others.length === 0 ? [] : [h("details", {}, h("summary", {}, "More values"), ...others.map((row) => row.element))]),
-      ...(this.kind === "calibration" ? [h("p", { class: "muted" }, `Observed: ${form.observations.join(", ")}`)] : []));
+      ...(this.kind === "calibration" ? [h("p", { class: "muted" }, `Observed: ${form.observations.join(", ")}`)] : []),
+      ...(this.kind === "risk" || this.kind === "options" ? [h("p", { class: "muted" }, `Events: ${form.events.join(", ") || "one class, without a frequency"}`)] : []),
+      ...(this.kind === "options" ? [h("p", { class: "muted" }, `Options: as it is, ${form.options.join(", ")}`)] : []));
+  }
+  /** How many ensembles a job runs: one for each class of events, and for each option. */
+  private ensembles(): number {
+    if (this.kind !== "risk" && this.kind !== "options") return 1;
+    const events = Math.max(1, this.form?.events.length ?? 1);
+    return this.kind === "risk" ? events : events * (1 + (this.form?.options.length ?? 0));
   }
   private async showCases(): Promise<void> {
     this.showTime();
@@ -139,7 +157,7 @@ export class NewJob {
       this.time.textContent = this.which === "chosen" ? "The longest cases take some minutes on two cores." : usualCases;
       return;
     }
-    const runs = this.runs.valueAsNumber;
+    const runs = this.runs.valueAsNumber * this.ensembles();
     const { estimate } = this;
     if (impossible || !(runs > 0)) this.time.textContent = "";
     else if (estimate === null) this.time.textContent = "How fast this computer runs the scene is being measured …";
@@ -162,6 +180,10 @@ export class NewJob {
     const runs = this.runs.valueAsNumber;
     if (!Number.isInteger(runs) || runs < 1 || runs > (this.form?.limits.runs ?? Infinity)) return `The number of runs is a whole number from 1 to ${this.form?.limits.runs ?? ""}.`;
     const common = { scene: this.scene.value, factors, runs };
+    if (this.kind === "risk" || this.kind === "options") {
+      const risk: WantedRisk = { kind: this.kind, ...common };
+      return risk;
+    }
     return this.kind === "ensemble" ? { kind: "ensemble", ...common, design: this.design.value as NonNullable<WantedEnsemble["design"]> } : { kind: "calibration", ...common };
   }
   private async start(): Promise<void> {
