@@ -30,10 +30,11 @@ BELOW = {
     "bench": ["core", "params", "terrain", "simd", "sim", "depth", "geo", "observe", "scene", "run", "report", "products"],
     "twin": ["core", "params", "terrain", "simd", "sim", "depth", "geo", "observe", "scene", "run", "report", "products"],
     "session": ["core", "params", "terrain", "simd", "sim", "depth", "geo", "observe", "scene", "run", "report", "products", "twin"],
+    "publish": ["core"],
     "serve": ["core", "params", "terrain", "simd", "sim", "depth", "geo", "observe", "scene", "run", "report", "products", "stats", "ensemble",
-              "calibrate", "validate", "twin", "session"],
+              "calibrate", "validate", "twin", "session", "publish"],
     "apps": ["core", "params", "terrain", "simd", "sim", "depth", "geo", "observe", "scene", "run", "report", "products", "stats", "ensemble",
-             "calibrate", "validate", "bench", "twin", "session", "serve"],
+             "calibrate", "validate", "bench", "twin", "session", "publish", "serve"],
 }
 INCLUDE = re.compile(r'^\s*#\s*include\s*([<"])([^>"]+)[>"]')
 NAMESPACE = re.compile(r"^namespace (talus\b[\w:]*) \{")
