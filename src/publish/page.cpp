@@ -56,15 +56,16 @@ std::string json_block(const json& content) {
 std::string head(const Content& content, std::string_view scripts, std::string_view styles, std::string_view connects) {
     // Without 'wasm-unsafe-eval' no browser compiles WebAssembly under a policy; it allows no script from a text.
     const std::string_view engine = content.engine ? " 'wasm-unsafe-eval'" : "";
+    const std::string_view worker = connects == "'none'" ? "blob:" : connects;
     return fmt::format(
         "<!doctype html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
         "<meta http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'; script-src {}{}; style-src {}; "
-        "connect-src {}; img-src data: blob:; font-src data:; media-src blob:; worker-src blob:; base-uri 'none'; "
+        "connect-src {}; img-src data: blob:; font-src data:; media-src blob:; worker-src {}; base-uri 'none'; "
         "form-action 'none'\">\n"
         "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n"
         "<meta name=\"color-scheme\" content=\"light dark\">\n<meta name=\"referrer\" content=\"no-referrer\">\n"
         "<title>{} · talus</title>\n",
-        scripts, engine, styles, connects, escaped(content.title));
+        scripts, engine, styles, connects, worker, escaped(content.title));
 }
 
 constexpr std::string_view opening =
@@ -96,8 +97,13 @@ std::string one_file(const PageFiles& page, const Content& content) {
 }
 
 std::vector<File> folder(const PageFiles& page, const Content& content) {
+    // By its manifest a folder is known as one of talus, which talus may replace.
     std::vector<File> files = {
-        {"page.js", std::string(page.script)}, {"page.css", std::string(page.style)}, {"tape.bin", content.tape}};
+        {"page.js", std::string(page.script)},
+        {"page.css", std::string(page.style)},
+        {"tape.bin", content.tape},
+        {"manifest.json", content.about.dump(2, ' ', false, json::error_handler_t::replace) + "\n"},
+    };
     if (content.engine) {
         files.push_back({"scene.bin", content.scene});
         files.push_back({"worker.js", std::string(page.worker)});
