@@ -39,7 +39,8 @@ What it contains is printed before it is written: check that you may pass the sc
   talus publish my_scene.toml -o site --folder --without-engine
                                             a folder for a web server
 
-Frames are as far apart as 6 MB of them allow, 0.1 s at least; --interval takes another distance.
+A run has as many frames as 4 MB take, most of them while debris moves; the page draws the way between two of them.
+--interval takes a fixed distance.
 
 Exit codes:
     0  written
@@ -120,6 +121,10 @@ Result<Source> load_scene_or_result(const PublishArguments& arguments, Interrupt
     if (arguments.threads) overrides.push_back(fmt::format("solver.thread_count={}", *arguments.threads));
     TALUS_ASSIGN(auto input, open_scene(scene_name, overrides, arguments.layers, watch));
     leave_out_zoom(input.scene, "a published twin");
+    if (input.scene.spec.solver.model == params::ModelChoice::depth_averaged) {
+        return Error{
+            "solver.model = \"depth_averaged\": a published run has particles; add --set solver.model=particles"};
+    }
     if (input.unpacked) name_unpacked_files(input.scene, input.unpacked->path(), input.name);
     source.wanted.overrides = input.source.overrides;
     source.wanted.scene = std::make_shared<const scene::Scene>(std::move(input.scene));
@@ -127,10 +132,15 @@ Result<Source> load_scene_or_result(const PublishArguments& arguments, Interrupt
     return Result<Source>(std::move(source));
 }
 
-Status check_output(const PublishArguments& arguments) {
+/// The folder to write into, or none for one file. Errors: what is there may not be replaced.
+Result<std::optional<products::OutputFolder>> prepare_output(const PublishArguments& arguments) {
+    using Folder = std::optional<products::OutputFolder>;
+    if (arguments.options.folder) {
+        TALUS_ASSIGN(auto made, products::OutputFolder::create(arguments.output, arguments.force));
+        return Result<Folder>(Folder(std::move(made)));
+    }
     std::error_code error;
     const fs::path output = arguments.output;
-    if (arguments.options.folder) return {};  // OutputFolder says what is there
     if (output.extension() != ".html") {
         return Error{
             fmt::format("{}: the name of a published twin ends in .html; for a folder add --folder", arguments.output)};
@@ -139,16 +149,16 @@ Status check_output(const PublishArguments& arguments) {
         return Error{
             fmt::format("{}: already exists; name another file, or replace it with --force", arguments.output)};
     }
-    return check_output_file(arguments.output);
+    TALUS_TRY(check_output_file(arguments.output));
+    return Result<Folder>(Folder());
 }
 
-Status write(const PublishArguments& arguments, const Twin& twin) {
-    if (!arguments.options.folder) return products::replace_text_file(arguments.output, twin.files.front().bytes);
-    TALUS_ASSIGN(auto folder, products::OutputFolder::create(arguments.output, arguments.force));
+Status write(const PublishArguments& arguments, const Twin& twin, std::optional<products::OutputFolder>& folder) {
+    if (!folder) return products::replace_text_file(arguments.output, twin.files.front().bytes);
     for (const publish::File& file : twin.files) {
-        TALUS_TRY(products::write_text_file(folder.path() / file.name, file.bytes));
+        TALUS_TRY(products::write_text_file(folder->path() / file.name, file.bytes));
     }
-    return folder.commit();
+    return folder->commit();
 }
 
 int publish_command(PublishArguments arguments) {
@@ -156,7 +166,9 @@ int publish_command(PublishArguments arguments) {
     InterruptWatch watch;
     if (const Status fits = check_publish(arguments.options); !fits)
         return fail(exit_code::bad_input, fits.error().message);
-    if (const Status free = check_output(arguments); !free) return fail(exit_code::bad_input, free.error().message);
+    auto output = prepare_output(arguments);
+    if (!output) return fail(exit_code::bad_input, output.error().message);
+    if (*output) watch.remove_at_once((*output)->path());
     arguments.options.recording.files = !arguments.no_files;
     ThrottledProgress progress(arguments.quiet, arguments.json);
     const serve::SayShare say = [&](const std::string& what, double share) {
@@ -186,7 +198,7 @@ int publish_command(PublishArguments arguments) {
                                 arguments.source, twin->hash, source->hash));
     }
     if (!arguments.quiet && !arguments.json && !print(twin->contents)) return exit_code::failure;
-    if (const Status written = write(arguments, *twin); !written)
+    if (const Status written = write(arguments, *twin, *output); !written)
         return fail(exit_code::failure, written.error().message);
     if (arguments.quiet) return exit_code::success;
     if (arguments.json) {
@@ -239,7 +251,7 @@ void add_publish(CLI::App& program, std::vector<Command>& commands) {
     app->add_flag("--without-engine", publish->options.without_engine,
                   "publish the recorded run alone: nothing can be changed in the page");
     app->add_option("--interval", publish->options.recording.frame_interval,
-                    "s between frames; default: as far apart as 6 MB allow")
+                    "s between frames; default: as many frames as 4 MB take, most while debris moves")
         ->type_name("S")
         ->check(CLI::Range(0.1, 3600.0));
     app->add_flag("--no-files", publish->no_files, "leave out report, tables and maps as files to download");

@@ -14,7 +14,7 @@ namespace talus::cli {
 
 /// How a twin is published.
 struct PublishOptions {
-    serve::RecordOptions recording;
+    serve::RecordOptions recording = {};
     bool without_engine = false;
     bool folder = false;  ///< a folder for a web server in place of one file
 };
