@@ -79,7 +79,8 @@ std::vector<std::string> contents_of(const scene::Scene& scene, const std::vecto
 json describe_twin(const scene::Scene& scene, bool engine) {
     return {{"version", 1},
             {"title", scene.spec.scene.title},
-            {"program", "talus " TALUS_VERSION},
+            {"program", "talus"},
+            {"program_version", TALUS_VERSION},
             {"made_at", utc_now()},
             {"engine", engine},
             {"sources", scene.spec.scene.sources}};

@@ -138,22 +138,37 @@ std::vector<double> apart(const std::vector<double>& times, double interval) {
     return chosen;
 }
 
-/// The shortest of the usual intervals with which the frames fit, from the size of a few of them.
-Result<double> fitting_interval(Asker& asker, const std::string& frame, const std::vector<double>& times,
-                                std::size_t room) {
+/// As many of the times as `room` takes, from the size of a few frames: close together while much moves, far apart
+/// while debris rests. `series`: of the scenario.
+Result<std::vector<double>> fitting_times(Asker& asker, const std::string& frame, const std::vector<double>& times,
+                                          const json& series, std::size_t room) {
     const std::vector<double> sample = some_of(times, 8);
     double bytes = 0;
     for (const double time : sample) {
         TALUS_ASSIGN(const Response one, asker.get(frame, {{"time_s", fmt::format("{:.6f}", time)}}));
         bytes += static_cast<double>(one.body->size());
     }
-    bytes /= static_cast<double>(std::max<std::size_t>(1, sample.size()));
-    double interval = 0.1;
-    for (const double longer : {0.2, 0.25, 0.5, 1.0, 2.0, 5.0, 10.0, 20.0, 60.0}) {
-        if (bytes * static_cast<double>(apart(times, interval).size()) <= static_cast<double>(room)) break;
-        interval = longer;
+    bytes /= static_cast<double>(sample.size());
+    const auto most = static_cast<std::size_t>(std::max(2.0, static_cast<double>(room) / std::max(1.0, bytes)));
+    if (times.size() <= most) return times;
+    const auto at = series.at("time").at("time_s").get<std::vector<double>>();
+    const auto moving = series.at("time").at("volume_moving_m3").get<std::vector<double>>();
+    const double greatest = moving.empty() ? 0 : *std::max_element(moving.begin(), moving.end());
+    constexpr double rest = 0.05;  // the share of the frames that debris at rest gets of those of a run in full motion
+    std::vector<double> passed(times.size(), 0);
+    std::size_t row = 0;
+    for (std::size_t k = 1; k < times.size(); ++k) {
+        while (row + 1 < at.size() && at[row] < times[k]) ++row;
+        const double share = greatest > 0 ? moving[row] / greatest : 0;
+        passed[k] = passed[k - 1] + (times[k] - times[k - 1]) * (rest + share);
     }
-    return interval;
+    std::vector<double> chosen{times.front()};
+    for (std::size_t k = 1; k + 1 < times.size(); ++k) {
+        const double due = passed.back() * static_cast<double>(chosen.size()) / static_cast<double>(most - 1);
+        if (passed[k] >= due) chosen.push_back(times[k]);
+    }
+    chosen.push_back(times.back());
+    return chosen;
 }
 
 Status record_scenario(Asker& asker, publish::Tape& tape, RecordedRun& run, const RecordOptions& options, double from,
@@ -174,11 +189,13 @@ Status record_scenario(Asker& asker, publish::Tape& tape, RecordedRun& run, cons
     TALUS_ASSIGN(const json recording, asker.get_json(of + "recording"));
     const auto times = recording.at("times_s").get<std::vector<double>>();
     if (times.empty()) return {};
-    double interval = options.frame_interval.value_or(0);
-    if (!options.frame_interval) {
-        TALUS_ASSIGN(interval, fitting_interval(asker, of + "frame", times, options.frame_bytes));
+    std::vector<double> frames;
+    if (options.frame_interval) {
+        frames = apart(times, *options.frame_interval);
+    } else {
+        TALUS_ASSIGN(const json series, asker.get_json(of + "series"));
+        TALUS_ASSIGN(frames, fitting_times(asker, of + "frame", times, series, options.frame_bytes));
     }
-    const std::vector<double> frames = apart(times, interval);
     run.frames = frames.size();
     for (std::size_t k = 0; k < frames.size(); ++k) {
         if (k % 10 == 0) TALUS_TRY(said(0.7 * static_cast<double>(k) / static_cast<double>(frames.size())));
@@ -203,11 +220,20 @@ Status record_scenario(Asker& asker, publish::Tape& tape, RecordedRun& run, cons
     return {};
 }
 
+/// Secrets of this program, and who has used it, are not for a reader of the file.
+json without_people(json session) {
+    session["links"] = json::object();
+    session["people"] = json::array();
+    return session;
+}
+
 /// What concerns the session as a whole.
 Status record_session(Asker& asker, publish::Tape& tape) {
     for (const char* question : {"scene", "orthophoto", "ensembles", "alerts", "overlays", "session/file"}) {
         TALUS_TRY(keep(asker, tape, question));
     }
+    TALUS_ASSIGN(json session, asker.get_json("session"));
+    tape.add("session", "application/json", to_text(without_people(std::move(session))));
     TALUS_ASSIGN(const Response terrain, asker.get("terrain", {{"max_cells", fmt::format("{}", mesh_cells)}}));
     if (terrain.status == 200) tape.add("terrain", terrain.type, *terrain.body);
     TALUS_ASSIGN(const json overlays, asker.get_json("overlays"));
@@ -264,9 +290,7 @@ Result<Recorded> record(OpenSession& open, const RecordOptions& options, const S
     for (json& message : messages) {
         if (message.at("type") == "hello") {
             names = message.at("session").at("scenarios").get<std::vector<std::string>>();
-            // Secrets of this program mean nothing to a reader of the file.
-            message["session"]["links"] = json::object();
-            message["session"]["people"] = json::array();
+            message["session"] = without_people(message["session"]);
             message["you"]["secret"] = "";
         }
         // As it is now: the last message may be of a moment before the end.

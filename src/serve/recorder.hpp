@@ -18,8 +18,8 @@ namespace talus::serve {
 using SayShare = std::function<bool(const std::string& what, double share)>;
 
 struct RecordOptions {
-    std::optional<double> frame_interval = {};  ///< s; empty: the shortest with which frames fit `frame_bytes`
-    std::size_t frame_bytes = 6'000'000;        ///< of all frames of a scenario
+    std::optional<double> frame_interval = {};  ///< s; empty: as many as `frame_bytes` takes
+    std::size_t frame_bytes = 4'000'000;        ///< of all frames of a scenario
     bool files = true;                          ///< with the report, tables and maps of each run as files
 };
 

@@ -90,7 +90,7 @@ export class Api {
   ensembleMap = async (ensemble: string, name: string): Promise<Grid> => decodeGrid(await this.binary(`ensembles/${ensemble}/maps/${name}`));
   orthophoto = (): Promise<Blob> => this.blob("orthophoto");
   frame = async (s: ScenarioName, time_s: number): Promise<Frame> =>
-    decodeFrame(await this.binary(`scenarios/${s}/frame?time_s=${time_s.toFixed(4)}`));
+    (await this.transport.frame?.(s, time_s)) ?? decodeFrame(await this.binary(`scenarios/${s}/frame?time_s=${time_s.toFixed(4)}`));
   probe = (s: ScenarioName, x: number, y: number): Promise<ProbeSeries> =>
     this.json(`scenarios/${s}/probe?x_m=${x.toFixed(2)}&y_m=${y.toFixed(2)}`);
   exports = async (s: ScenarioName): Promise<ExportFile[]> => (await this.json<{ files: ExportFile[] }>(`scenarios/${s}/exports`)).files;

@@ -1,9 +1,12 @@
 // The transport of a recording: the tape answers as the session did, to one reader who changes nothing.
 import { decodeFrame, type Frame } from "./frame";
+import { between } from "./between";
 import type { ProbeSeries, SceneInfo } from "./messages";
 import type { Tape } from "./tape";
 import type { Possible, Transport, Wire, WireEvents } from "./transport";
 
+/** Two each of two scenarios, and some beyond. */
+const mostDecoded = 6;
 const refused = (status: number, sentence: string): Response =>
   new Response(JSON.stringify({ error: sentence }), { status, headers: { "Content-Type": "application/json" } });
 const json = (content: unknown): Response => new Response(JSON.stringify(content), { headers: { "Content-Type": "application/json" } });
@@ -13,7 +16,31 @@ const bufferOf = (bytes: Uint8Array): ArrayBuffer => bytes.slice().buffer as Arr
 export class Recorded implements Transport {
   readonly can: Possible = { change: false, server: false };
 
+  /** Those on both sides of the time shown last, by address and time: playing goes from one to the next. */
+  private readonly decoded = new Map<string, Promise<Frame | null>>();
+
   constructor(private readonly tape: Tape) {}
+
+  /** Frames are farther apart than the pictures of the page: between two of them it draws the straight way. */
+  async frame(scenario: string, time_s: number): Promise<Frame | null> {
+    const address = `scenarios/${scenario}/frame`;
+    const times = this.tape.around(address, time_s);
+    if (times === null) return null;
+    const [from, to] = await Promise.all(times.map((time) => this.decode(address, time)));
+    if (!from || !to) return null;
+    return between(from, to, time_s);
+  }
+  private decode(address: string, time_s: number): Promise<Frame | null> {
+    const key = `${address} ${time_s}`;
+    const known = this.decoded.get(key) ?? this.tape.find(address, time_s).then((found) => (found ? decodeFrame(bufferOf(found.body)) : null));
+    this.decoded.delete(key);
+    this.decoded.set(key, known);
+    for (const oldest of this.decoded.keys()) {
+      if (this.decoded.size <= mostDecoded) break;
+      this.decoded.delete(oldest);
+    }
+    return known;
+  }
 
   async ask(method: string, path: string): Promise<Response> {
     if (method !== "GET") return refused(409, "This is a recording: it can be watched, not changed.");

@@ -12,10 +12,10 @@ const startOfHead = 16;
 const largestHead = 64 * 1024 * 1024;
 const almost_s = 1e-6;
 
-/** They are in the order of time. */
-function lastUntil(series: readonly Kept[], time_s: number): Kept | undefined {
-  const after = series.findIndex((one) => (one.time_s ?? 0) > time_s + almost_s);
-  return series[after < 0 ? series.length - 1 : Math.max(0, after - 1)];
+/** Of the last one at or before a time; they are in the order of time. The first one before all of them. */
+function lastUntil(times: readonly number[], time_s: number): number {
+  const after = times.findIndex((one) => one > time_s + almost_s);
+  return after < 0 ? times.length - 1 : Math.max(0, after - 1);
 }
 
 export class Tape {
@@ -38,10 +38,18 @@ export class Tape {
   times(address: string): number[] {
     return (this.head.times[address] ?? []).map((kept) => kept.time_s ?? 0);
   }
+  /** The times of the answers on both sides of a time; the same one twice at an answer and outside them. null: there are none. */
+  around(address: string, time_s: number): [number, number] | null {
+    const times = this.times(address);
+    if (times.length === 0) return null;
+    const before = lastUntil(times, time_s);
+    const [from, to] = [times[before], times[before + 1]];
+    return to === undefined || time_s <= from + almost_s ? [from, from] : [from, to];
+  }
   /** Now, or the last one at or before a time; the first one before all of them. null: there is none. */
   async find(address: string, time_s: number | null): Promise<Found | null> {
     const series = this.head.times[address];
-    const kept = time_s === null || series === undefined ? (this.head.answers[address] ?? series?.at(-1)) : lastUntil(series, time_s);
+    const kept = time_s === null || series === undefined ? (this.head.answers[address] ?? series?.at(-1)) : series[lastUntil(this.times(address), time_s)];
     if (kept === undefined) return null;
     if (kept.at + kept.size > this.bodies.length) throw new MalformedMessage("The recording is cut off: get the file again.");
     const body = this.bodies.subarray(kept.at, kept.at + kept.size);

@@ -1,5 +1,7 @@
 // How the page reaches what it shows: a server over the network, the engine in a worker, or a recording in the file itself.
 
+import type { Frame } from "./frame";
+
 /** What can be done where the page is; the rest is not offered. */
 export interface Possible {
   /** Runs, and changes of them. */
@@ -28,6 +30,8 @@ export interface Transport {
   ask(method: string, path: string, body: object | undefined, secret: string | null): Promise<Response>;
   /** Sends a file; `onshare` is told which share of it has been sent. */
   upload(path: string, file: File, secret: string | null, onshare: (share: number) => void): Promise<Response>;
+  /** A frame of the recording of a scenario, where it need not be asked for as a message. */
+  frame?(scenario: string, time_s: number): Promise<Frame | null>;
   /** `secret`: of a person who was here before a break. */
   connect(name: string, secret: string | null, events: WireEvents): Wire;
 }
