@@ -26,6 +26,7 @@ void add_serve(CLI::App& program, std::vector<Command>& commands);
 void add_start(CLI::App& program, std::vector<Command>& commands);
 void add_replay(CLI::App& program, std::vector<Command>& commands);
 void add_scene(CLI::App& program, std::vector<Command>& commands);
+void add_publish(CLI::App& program, std::vector<Command>& commands);
 void add_bundle(CLI::App& program, std::vector<Command>& commands);
 void add_validate(CLI::App& program, std::vector<Command>& commands);
 void add_ensemble(CLI::App& program, std::vector<Command>& commands);

@@ -42,6 +42,8 @@ Examples:
   talus bundle my_scene/scene.toml -o my_scene.zip
                                             the scene with its files in one archive; talus run takes that too
   talus replay session.json                 repeats a saved live session and compares its result
+  talus publish my_scene.toml -o twin.html --without-engine
+                                            the run in one page, for anybody with a browser
   talus validate --quick                    computes cases with known results, and prints one table
   talus serve                               the built-in scene live in the browser: watch, control and share it
   talus calibrate my_scene.toml --vary material.friction_coefficient=0.1:0.6
@@ -96,8 +98,8 @@ int talus_main(int argc, char** argv) {
     app.require_subcommand(0, 1);
 
     std::vector<Command> commands;
-    for (const auto add : {add_start, add_run, add_compare, add_serve, add_replay, add_scene, add_bundle, add_validate,
-                           add_ensemble, add_calibrate, add_risk, add_bench, add_manual}) {
+    for (const auto add : {add_start, add_run, add_compare, add_serve, add_replay, add_publish, add_scene, add_bundle,
+                           add_validate, add_ensemble, add_calibrate, add_risk, add_bench, add_manual}) {
         add(app, commands);
     }
     app.footer(program_help);  // last: commands made after it would inherit it

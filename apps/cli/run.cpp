@@ -11,6 +11,7 @@
 #include <fmt/ranges.h>
 
 #include "command.hpp"
+#include "core/temporary_folder.hpp"
 #include "core/try.hpp"
 #include "exit_code.hpp"
 #include "extras.hpp"
@@ -20,7 +21,9 @@
 #include "params/fields.hpp"
 #include "params/scene_text.hpp"
 #include "products/products.hpp"
+#include "products/text_file.hpp"
 #include "progress.hpp"
+#include "publish.hpp"
 #include "run/run_scene.hpp"
 #include "scene/builtin.hpp"
 #include "scene/scene.hpp"
@@ -37,7 +40,7 @@ namespace fs = std::filesystem;
 constexpr const char* run_help = R"(
 Every value of the scene can be set with --set section.key=value. The result folder holds maps (GeoTIFF with QGIS
 styles), front.csv, timeseries.csv, buildings.csv, results.gpkg, results.qlr (opens all layers in QGIS), results.kml, results.json,
-manifest.json and report.html.
+manifest.json and report.html; with --publish also twin.html (talus publish --help).
 
 --layers N chooses the particle spacing from the thickness of the debris, and says what it costs before it starts;
 --layers real-time takes the most layers that this machine runs in real time, and says how to repeat that elsewhere.
@@ -99,6 +102,18 @@ Status check_from_state(const RunArguments& arguments) {
     return Error{"--from-state is refused beside --convergence, --variants and --vary, whose runs start at 0 s"};
 }
 
+/// Errors: what cannot be together with --publish.
+Status check_run_publish(const RunArguments& arguments, const scene::Scene& scene) {
+    if (!arguments.publish) return {};
+    const bool averaged = scene.spec.solver.model == params::ModelChoice::depth_averaged;
+    if (scene.zoom || averaged || !arguments.from_state.empty()) {
+        return Error{
+            "--publish is refused beside a zoom, --from-state and the depth-averaged model: a published run has "
+            "particles from time 0"};
+    }
+    return check_publish({.without_engine = true});
+}
+
 Result<Job> open_job(const RunArguments& arguments, ProgressReporter& progress, InterruptWatch& watch) {
     std::vector<std::string> overrides = arguments.overrides;
     if (!arguments.model.empty()) overrides.push_back("solver.model=" + arguments.model);
@@ -128,6 +143,7 @@ Result<Job> open_job(const RunArguments& arguments, ProgressReporter& progress, 
 
     TALUS_TRY(check_zoom_options(arguments, input.scene));
     TALUS_TRY(check_from_state(arguments));
+    TALUS_TRY(check_run_publish(arguments, input.scene));
     std::string start_from;
     if (!arguments.from_state.empty()) {
         TALUS_ASSIGN(start_from, read_state_file(arguments.from_state, input.scene));
@@ -183,6 +199,21 @@ class RunCallbacks {
     run::RunOptions options_;
 };
 
+/// twin.html beside the report. It failing is no reason to lose the results.
+void add_twin(const Job& job, Extras& extras, ProgressReporter& progress, InterruptWatch& watch) {
+    TemporaryFolder folder;
+    watch.remove_at_once(folder.path());
+    progress.say("computing the run again for twin.html");
+    const serve::SayShare say = [&](const std::string&, double) { return !watch.stop_requested(); };
+    const auto twin = make_twin({.scene = std::make_shared<const scene::Scene>(job.input.scene),
+                                 .overrides = job.input.source.overrides,
+                                 .folder = folder.path()},
+                                {.without_engine = true}, say);
+    const Status written = twin ? products::write_text_file(job.output.path() / "twin.html", twin->files.front().bytes)
+                                : Status(twin.error());
+    if (!written) extras.failures().push_back("twin.html: " + written.error().message);
+}
+
 Status write_report(Job& job, const run::RunResult& result, const std::vector<run::Comparison>& comparisons,
                     Extras& extras, InterruptWatch& watch) {
     TALUS_TRY(products::write_products(job.input.scene, result, job.output.path(), comparisons, {},
@@ -221,6 +252,7 @@ int run_command(const RunArguments& arguments) {
          !std::all_of(comparisons.begin(), comparisons.end(), [](const run::Comparison& c) { return c.all_ran(); }));
     progress.say(interrupted ? "interrupted: writing the results so far" : "writing maps, tables and report");
     take_followed_path(job->input.scene, *result);
+    if (arguments.publish && !interrupted) add_twin(*job, extras, progress, watch);
     const Status written = write_report(*job, *result, comparisons, extras, watch);  // report
     progress.clear();
     if (!written) return fail(exit_code::failure, written.error().message);
@@ -272,6 +304,9 @@ void add_run(CLI::App& program, std::vector<Command>& commands) {
         ->type_name("N")
         ->expected(0, 1)
         ->default_str("200");
+    app->add_flag(
+        "--publish", run->publish,
+        "also write twin.html, the run in one page for anybody's browser; computes the run again to record it");
     add_overrides(*app, run->overrides);
     add_backend(*app, run->overrides);
     add_layers(*app, run->layers, true);

@@ -29,6 +29,7 @@ struct RunArguments {
     std::string from_state{};             ///< of --from-state: a file; empty: not given
     std::string data;                     ///< value of TALUS_DATA; empty: as in the environment
     bool quiet = false, json = false;
+    bool publish = false;                 ///< with twin.html beside the report
     bool convergence = false;             ///< run three refinements too and compare
     bool named_variants = false;          ///< run every [[variant]] of the scene too and compare
     std::vector<std::string> variations;  ///< "section.key=value,value": run with each value too and compare

@@ -54,6 +54,7 @@ Bytes gzip(std::string_view content) {
 
 Site::Site() {
     for (const ArchivedFile& file : site_archive()) {
+        if (file.name.starts_with("published/")) continue;  // of published twins: no browser asks for it
         File made;
         made.type = type_of(file.name);
         made.content = std::make_shared<const std::string>(file.content);

@@ -4,6 +4,7 @@ import "./style/panels.css";
 import "./style/view.css";
 import "./style/touch.css";
 import { Api, Refused } from "./protocol/api";
+import { Server } from "./protocol/server";
 import { takeToken } from "./protocol/token";
 import { h } from "./ui/dom";
 
@@ -15,7 +16,8 @@ async function begin(page: HTMLElement): Promise<void> {
     say(page, "This page needs the complete link", "Open the link that talus serve printed. It ends in #token=…, which grants access.");
     return;
   }
-  const api = new Api(token);
+  const server = new Server(token);
+  const api = new Api(server);
   try {
     const place = await api.start();
     if (place.available && (place.open === null || location.hash === "#start")) {
@@ -27,7 +29,7 @@ async function begin(page: HTMLElement): Promise<void> {
     const [scene, terrain, { openPage }] = await Promise.all([api.scene(), api.terrain(meshCells), import("./page")]);
     document.title = `${scene.title} · talus`;
     page.classList.remove("starting");
-    openPage(page, token, scene, terrain, api, place);
+    openPage(page, server, scene, terrain, api, place);
   } catch (error) {
     console.error(error);
     if (error instanceof Refused && (error.status === 401 || error.status === 403)) {

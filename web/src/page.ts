@@ -33,6 +33,7 @@ import type { Grid } from "./protocol/grid";
 import type { SceneInfo } from "./protocol/messages";
 import type { StartPage } from "./protocol/start";
 import { takeLinkedView } from "./protocol/token";
+import type { Transport } from "./protocol/transport";
 import { Drawing } from "./scene/drawing";
 import { Follow } from "./scene/follow";
 import { frontMarks } from "./scene/front_mark";
@@ -57,8 +58,8 @@ import { tabs } from "./ui/tabs";
 import { watchTyping } from "./ui/typed";
 import { Toasts } from "./ui/toast";
 
-export function openPage(page: HTMLElement, token: string, info: SceneInfo, terrain: Grid, api: Api, place: StartPage): void {
-  const twin = new Twin(token, info, new Relief(terrain, info.origin), api, place);
+export function openPage(page: HTMLElement, transport: Transport, info: SceneInfo, terrain: Grid, api: Api, place: StartPage): void {
+  const twin = new Twin(transport, info, new Relief(terrain, info.origin), api, place);
   buildPage(page, twin);
   for (const note of place.notes ?? []) twin.notice(note, "error");
   const former = takeFormer();
@@ -122,6 +123,7 @@ function buildPage(page: HTMLElement, twin: Twin): void {
     // Who may add one needs the tab before there is any.
     readings.offer("alarms", raised || twin.you.value?.role === "controller" || twin.shown.value.some((name) => (twin.cells[name].setup.value?.alarms.length ?? 0) > 0));
   });
+  readings.offer("calibrate", twin.can.server);
   let alarms = 0;
   twin.alerts.watch((alerts) => {
     const raised = alerts?.alarms.length ?? 0;
@@ -175,7 +177,7 @@ function buildPage(page: HTMLElement, twin: Twin): void {
   for (const element of [bar.show, stage.element]) bars.observe(element);
   page.replaceChildren(
     h("header", { class: "topbar" }, setup, wordmark, h("h1", {}, twin.scene.title), badge("aside"), h("span", { class: "spring" }),
-      people(twin, () => presentView(twin, stage)), sessionButton(twin), ...exportButtons(twin, stage, picture), button("Help", { icon: "help", bare: true, class: "bare help", title: "Help and shortcuts (?)", onclick: help }), drawer),
+      twin.can.server ? people(twin, () => presentView(twin, stage)) : null, twin.can.server ? sessionButton(twin) : null, ...exportButtons(twin, stage, picture), button("Help", { icon: "help", bare: true, class: "bare help", title: "Help and shortcuts (?)", onclick: help }), drawer),
     alarmBanner(twin),
     controls(twin, drawing),
     middle,
@@ -183,8 +185,19 @@ function buildPage(page: HTMLElement, twin: Twin): void {
     transport(twin, playback),
     toasts.polite, toasts.urgent,
   );
+  if (!twin.can.change) playOnce(twin, playback);
   const linked = viewOf(takeLinkedView() ?? "");
   if (linked) openView(twin, stage, linked);
+}
+
+/** A recording is at its end until somebody plays it: it begins by itself, unless the reader wants no motion. */
+function playOnce(twin: Twin, playback: Playback): void {
+  const end = watchAll(twin.every("state"), () => {
+    if (twin.now.state.value === null) return;
+    queueMicrotask(() => end());
+    playback.seek(0);
+    if (!matchMedia("(prefers-reduced-motion: reduce)").matches) playback.toggle();
+  });
 }
 
 function presentView(twin: Twin, stage: Stage): string {

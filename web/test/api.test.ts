@@ -1,5 +1,6 @@
 import { afterEach, expect, test, vi } from "vitest";
 import { Api, Refused } from "../src/protocol/api";
+import { Server } from "../src/protocol/server";
 
 afterEach(() => vi.unstubAllGlobals());
 
@@ -16,7 +17,7 @@ test.each([
   ["inside the answer", () => Promise.resolve(broken())],
 ])("a connection that breaks %s is a server that does not answer", async (_, answer) => {
   vi.stubGlobal("fetch", answer);
-  const api = new Api("token");
+  const api = new Api(new Server("token"));
   for (const asked of [api.session(), api.exported("A", "report.html"), api.act("A", { action: "restart" } as never)]) {
     await expect(asked).rejects.toThrow(new Refused(0, "The server does not answer."));
     await expect(asked).rejects.toBeInstanceOf(Refused);
@@ -26,5 +27,5 @@ test.each([
 
 test("an answer that is no JSON keeps the error of the reader", async () => {
   vi.stubGlobal("fetch", () => Promise.resolve(new Response("<html>")));
-  await expect(new Api("token").session()).rejects.toBeInstanceOf(SyntaxError);
+  await expect(new Api(new Server("token")).session()).rejects.toBeInstanceOf(SyntaxError);
 });

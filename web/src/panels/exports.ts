@@ -38,7 +38,7 @@ async function open(twin: Twin, picture: Picture): Promise<void> {
   let flow: HTMLElement | null = null;
   if (!(await twin.attempt(async () => {
     files = await twin.api.exports(scenario);
-    flow = await flowExport(twin, scenario, picture.fileName);
+    if (twin.can.server) flow = await flowExport(twin, scenario, picture.fileName);
   }))) return;
   const offers: Offer[] = [
     ...files.map((f): Offer => ({ name: f.name, what: f.what, bytes: f.bytes, get: () => twin.api.exported(scenario, f.name) })),

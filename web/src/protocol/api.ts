@@ -1,4 +1,5 @@
 // The HTTP half of docs/protocol.md.
+import type { Possible, Transport } from "./transport";
 import { decodeFrame, type Frame, type ScenarioName } from "./frame";
 import { decodeGrid, type Grid } from "./grid";
 import type { Action, DepthAveragedComparison, Done, Ensemble, ExportFile, Figure, FlowExport, FlowFormat, FlowOffer, GaugeReadings, Impacts, LayerName, NewScenario, Observed, OverlayData, ProbeSeries, Recording, SceneInfo, Series, Session, Share, Tiles, WantedOverlay, WantedShare } from "./messages";
@@ -35,29 +36,21 @@ export class Api {
   /** How many answers were asked for, and how many have been read or refused. */
   readonly reads = { begun: 0, ended: 0 };
 
-  constructor(private readonly token: string) {}
+  constructor(private readonly transport: Transport) {}
 
+  get can(): Possible {
+    return this.transport.can;
+  }
   private async ask(method: string, path: string, body?: object): Promise<Response> {
-    const headers: Record<string, string> = { Authorization: `Bearer ${this.token}` };
-    if (body !== undefined) headers["Content-Type"] = "application/json";
-    if (method !== "GET" && this.secret !== null) headers["Talus-Person"] = this.secret;
-    const response = await fetch(`api/${path}`, { method, headers, ...(body === undefined ? {} : { body: JSON.stringify(body) }) }).catch(noAnswer);
+    const response = await this.transport.ask(method, path, body, method === "GET" ? null : this.secret).catch(noAnswer);
     if (!response.ok) throw refusal(response.status, path, await response.text().catch(() => ""));
     return response;
   }
   /** Sends a file; `onshare` is told which share of it has been sent. */
-  private upload<T>(path: string, file: File, onshare: (share: number) => void): Promise<T> {
-    return new Promise((resolve, reject) => {
-      const request = new XMLHttpRequest();
-      request.open("PUT", `api/${path}`);
-      request.setRequestHeader("Authorization", `Bearer ${this.token}`);
-      request.setRequestHeader("Content-Type", "application/octet-stream");
-      if (this.secret !== null) request.setRequestHeader("Talus-Person", this.secret);
-      request.upload.addEventListener("progress", (event) => onshare(event.loaded / Math.max(1, file.size)));
-      request.addEventListener("error", () => reject(new Refused(0, "The server does not answer.")));
-      request.addEventListener("load", () => (request.status >= 200 && request.status < 300 ? resolve(JSON.parse(request.responseText) as T) : reject(refusal(request.status, path, request.responseText))));
-      request.send(file);
-    });
+  private async upload<T>(path: string, file: File, onshare: (share: number) => void): Promise<T> {
+    const response = await this.transport.upload(path, file, this.secret, onshare).catch(noAnswer);
+    if (!response.ok) throw refusal(response.status, path, await response.text());
+    return response.json() as Promise<T>;
   }
   private async get<T>(path: string, read: (response: Response) => Promise<T>): Promise<T> {
     ++this.reads.begun;
@@ -97,7 +90,7 @@ export class Api {
   ensembleMap = async (ensemble: string, name: string): Promise<Grid> => decodeGrid(await this.binary(`ensembles/${ensemble}/maps/${name}`));
   orthophoto = (): Promise<Blob> => this.blob("orthophoto");
   frame = async (s: ScenarioName, time_s: number): Promise<Frame> =>
-    decodeFrame(await this.binary(`scenarios/${s}/frame?time_s=${time_s.toFixed(4)}`));
+    (await this.transport.frame?.(s, time_s)) ?? decodeFrame(await this.binary(`scenarios/${s}/frame?time_s=${time_s.toFixed(4)}`));
   probe = (s: ScenarioName, x: number, y: number): Promise<ProbeSeries> =>
     this.json(`scenarios/${s}/probe?x_m=${x.toFixed(2)}&y_m=${y.toFixed(2)}`);
   exports = async (s: ScenarioName): Promise<ExportFile[]> => (await this.json<{ files: ExportFile[] }>(`scenarios/${s}/exports`)).files;

@@ -1,6 +1,7 @@
-// The WebSocket half of docs/protocol.md: connects, reconnects after a break, decodes frames in order.
+// The half of docs/protocol.md that a WebSocket carries: connects, reconnects after a break, decodes frames in order.
 import { decodeFrame, type Frame, type ScenarioName } from "./frame";
 import type { PageMessage, Place, ServerMessage } from "./messages";
+import type { Transport, Wire } from "./transport";
 
 export type Connection = "connecting" | "open" | "lost" | "refused";
 export interface View { scenarios: ScenarioName[]; rate_hz: number; particle_cap: number }
@@ -17,7 +18,8 @@ const firstWait_s = 0.5;
 const longestWait_s = 8;
 
 export class Live {
-  private socket: WebSocket | null = null;
+  private wire: Wire | null = null;
+  private isOpen = false;
   private wait_s = firstWait_s;
   private everOpen = false;
   private asking = false;
@@ -31,44 +33,41 @@ export class Live {
   /** Time for decoding the last frame, on this thread and others, ms. */
   decode_ms = 0;
 
-  constructor(private readonly token: string, private name: string, private readonly events: LiveEvents) {}
+  constructor(private readonly transport: Transport, private name: string, private readonly events: LiveEvents) {}
 
   start(): void {
     this.events.connection(this.everOpen ? "lost" : "connecting", 0);
-    const base = new URL("ws", location.href);
-    base.protocol = base.protocol === "https:" ? "wss:" : "ws:";
-    base.hash = "";
-    base.search = new URLSearchParams({ token: this.token, name: this.name, ...(this.secret ? { person: this.secret } : {}) }).toString();
-    const socket = new WebSocket(base);
-    socket.binaryType = "arraybuffer";
-    this.socket = socket;
-    socket.onopen = () => {
-      this.everOpen = true;
-      this.wait_s = firstWait_s;
-      this.events.connection("open", 0);
-      if (this.view) this.send({ type: "view", ...this.view });
-    };
-    socket.onmessage = (event: MessageEvent<unknown>) => {
-      if (typeof event.data === "string") this.events.message(JSON.parse(event.data) as ServerMessage);
-      else if (event.data instanceof ArrayBuffer) this.take(event.data);
-    };
-    socket.onclose = () => {
-      if (this.socket !== socket) return;
-      this.socket = null;
-      this.events.connection("lost", this.wait_s);
-      this.timer = window.setTimeout(() => void this.again(), this.wait_s * 1000);
-      this.wait_s = Math.min(2 * this.wait_s, longestWait_s);
-    };
+    const wire: Wire = this.transport.connect(this.name, this.secret, {
+      opened: () => {
+        this.everOpen = this.isOpen = true;
+        this.wait_s = firstWait_s;
+        this.events.connection("open", 0);
+        if (this.view) this.send({ type: "view", ...this.view });
+      },
+      message: (data) => {
+        if (typeof data === "string") this.events.message(JSON.parse(data) as ServerMessage);
+        else this.take(data);
+      },
+      closed: () => {
+        if (this.wire !== wire) return;
+        this.wire = null;
+        this.isOpen = false;
+        this.events.connection("lost", this.wait_s);
+        this.timer = window.setTimeout(() => void this.again(), this.wait_s * 1000);
+        this.wait_s = Math.min(2 * this.wait_s, longestWait_s);
+      },
+    });
+    this.wire = wire;
   }
   /** Retries immediately instead of waiting. */
   retry(): void {
-    if (this.socket) return;
+    if (this.wire) return;
     clearTimeout(this.timer);
     void this.again();
   }
   /** Drops the connection as a break in the network would; it reconnects by itself. */
   drop(): void {
-    this.socket?.close();
+    this.wire?.close();
   }
   show(view: View): void {
     this.view = view;
@@ -90,7 +89,7 @@ export class Live {
     if (mayReturn) this.start();
   }
   private send(message: PageMessage): void {
-    if (this.socket?.readyState === WebSocket.OPEN) this.socket.send(JSON.stringify(message));
+    if (this.isOpen) this.wire?.send(JSON.stringify(message));
   }
   private take(data: ArrayBuffer): void {
     this.waiting.set(new Uint8Array(data)[5] ?? 0, data);

@@ -3,6 +3,7 @@ import { Api, Refused } from "../protocol/api";
 import { scenarioNames, type Frame, type ScenarioName } from "../protocol/frame";
 import { Live, type Connection } from "../protocol/live";
 import type { ShownLayer } from "../protocol/layers";
+import type { Possible, Transport } from "../protocol/transport";
 import type { Action, Alerts, CalibrationStatus, DepthAveragedStatus, Done, Ensemble, GaugeReading, GaugeReadings, Impacts, Overlays, Person, Place, Point, ProbeSeries, SceneInfo, SectionReading, Series, ServerMessage, Session, Setup, State, You } from "../protocol/messages";
 import { usualMoment, type Moment } from "../scene/natural/sun";
 import type { StartPage } from "../protocol/start";
@@ -117,9 +118,9 @@ export class Twin {
   private readonly frameReaders: ((frame: Frame) => void)[] = [];
   private readonly noticeHandlers: ((sentence: string, kind: "error" | "done") => void)[] = [];
 
-  constructor(token: string, readonly scene: SceneInfo, readonly relief: Relief, api: Api, readonly place: StartPage) {
+  constructor(transport: Transport, readonly scene: SceneInfo, readonly relief: Relief, api: Api, readonly place: StartPage) {
     this.api = api;
-    this.live = new Live(token, localStorage.getItem(nameKey) ?? "", {
+    this.live = new Live(transport, localStorage.getItem(nameKey) ?? "", {
       message: (message) => this.hear(message),
       frame: (frame) => {
         if (this.replay_s.value === null) for (const reader of this.frameReaders) reader(frame);
@@ -222,8 +223,13 @@ export class Twin {
   get now(): ScenarioCells {
     return this.cells[this.edited.value];
   }
+  /** What can be done where the page is. */
+  get can(): Possible {
+    return this.api.can;
+  }
   /** Why this person cannot make changes now; null: they can. */
   get hindrance(): string | null {
+    if (!this.can.change) return "This is a recording: it can be watched, not changed.";
     if (this.connection.value.state === "refused") return "This link is no longer valid.";
     if (this.connection.value.state !== "open") return "The connection is lost; reconnecting automatically.";
     const you = this.you.value;

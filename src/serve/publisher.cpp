@@ -1,0 +1,113 @@
+#include "serve/publisher.hpp"
+
+#include <chrono>
+#include <filesystem>
+#include <functional>
+#include <future>
+#include <utility>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "core/try.hpp"
+#include "serve/library.hpp"
+#include "serve/server.hpp"
+#include "serve/worker.hpp"
+#include "session/json_text.hpp"
+
+namespace talus::serve {
+namespace {
+
+using nlohmann::json;
+
+/// An open session without a server: a thread stands for the server's.
+class Hall {
+  public:
+    [[nodiscard]] Status open(ToPublish& wanted) {
+        ServerOptions options;
+        options.export_folder = wanted.folder;
+        options.scenario.overrides = wanted.overrides;
+        options.tokens = {"-", "-"};
+        TALUS_ASSIGN(session_, OpenSession::open(thread_, wanted.scene, options, std::move(wanted.scenarios),
+                                                 std::move(wanted.overlays)));
+        return {};
+    }
+    ~Hall() {
+        if (!session_) return;
+        OpenSession::retire(thread_, std::move(session_));
+        // The thread lets the session go two tasks later.
+        std::promise<void> gone;
+        worker_.post([&] { worker_.post([&] { worker_.post([&] { gone.set_value(); }); }); });
+        gone.get_future().wait();
+    }
+    Hall() = default;
+    Hall(const Hall&) = delete;
+    Hall& operator=(const Hall&) = delete;
+    [[nodiscard]] OpenSession& session() { return *session_; }
+
+  private:
+    Worker worker_{"publisher"};
+    Thread thread_{[this](std::function<void()> task) { worker_.post(std::move(task)); },
+                   [](std::chrono::milliseconds) {}};  // nobody waits for lists of people
+    OpenSessionPtr session_;
+};
+
+/// Its file's name: a path tells more than a reader should know.
+std::string file_name(const std::string& path) {
+    return std::filesystem::path(path).filename().string();
+}
+
+std::vector<std::string> contents_of(const scene::Scene& scene, const std::vector<RecordedRun>& runs) {
+    std::vector<std::string> lines;
+    for (const RecordedRun& run : runs) {
+        lines.push_back(fmt::format("run {}: to {:.1f} s, {} frames", run.name, run.end, run.frames));
+    }
+    const GridGeometry& ground = scene.terrain.elevation().geometry;
+    lines.push_back(fmt::format(
+        "terrain: {} x {} cells of {:.3g} m, {}", ground.columns, ground.rows, ground.cell,
+        scene.spec.scene.reconstruction ? "a reconstruction" : "as in " + file_name(scene.spec.terrain.file)));
+    const std::string& photo = scene.spec.terrain.orthophoto;
+    lines.push_back("orthophoto: " + (photo.empty() ? "none" : file_name(photo)));
+    const std::vector<std::string>& sources = scene.spec.scene.sources;
+    lines.push_back(sources.empty() ? "data of: the scene names no sources; check that you may pass its data on"
+                                    : fmt::format("data of: {}", fmt::join(sources, "; ")));
+    return lines;
+}
+
+}  // namespace
+
+json describe_twin(const scene::Scene& scene, bool engine) {
+    return {{"version", 1},
+            {"title", scene.spec.scene.title},
+            {"program", "talus"},
+            {"program_version", TALUS_VERSION},
+            {"made_at", utc_now()},
+            {"engine", engine},
+            {"sources", scene.spec.scene.sources}};
+}
+
+Result<Published> publish(ToPublish wanted, const SayShare& say) {
+    Published made;
+    TALUS_ASSIGN(made.page, published_page());
+    const std::shared_ptr<const scene::Scene> scene = wanted.scene;
+    const bool run = wanted.scenarios.empty();
+    const RecordOptions recording = wanted.recording;
+    Hall hall;
+    TALUS_TRY(hall.open(wanted));
+    if (run) TALUS_TRY(run_to_end(hall.session(), say));
+    TALUS_ASSIGN(const Recorded recorded, record(hall.session(), recording, say));
+    made.contents = contents_of(*scene, recorded.runs);
+    made.hash = recorded.runs.front().hash;
+    made.content.title = scene->spec.scene.title;
+    made.content.about = describe_twin(*scene, false);
+    made.content.tape = recorded.tape.pack();
+    if (made.content.tape.size() > largest_twin) {
+        return Error{
+            fmt::format("the recording has {:.0f} MB; a page takes {:.0f} MB at most: take fewer frames with "
+                        "--interval, or leave the files out with --no-files",
+                        static_cast<double>(made.content.tape.size()) / 1e6, static_cast<double>(largest_twin) / 1e6)};
+    }
+    return made;
+}
+
+}  // namespace talus::serve

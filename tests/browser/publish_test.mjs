@@ -1,0 +1,209 @@
+// A published twin in Chromium, opened from disk, with real clicks: nothing is asked for outside the file.
+// Usage: node publish_test.mjs OUTPUT_FOLDER TALUS. Exit code 77: skipped, the browser or its driver is missing.
+import { spawnSync } from "node:child_process";
+import { existsSync, mkdirSync, readFileSync, writeFileSync } from "node:fs";
+import { createServer } from "node:http";
+import { extname, join, resolve } from "node:path";
+import { pathToFileURL } from "node:url";
+
+const [, , folder, talus] = process.argv;
+const output = resolve(folder);
+const browserPath = process.env.TALUS_BROWSER ?? "/usr/bin/chromium";
+function skip(reason) {
+  console.log(`SKIPPED browser.publish: ${reason}`);
+  process.exit(77);
+}
+if (!existsSync(browserPath)) skip(`no browser at ${browserPath}; install chromium or set TALUS_BROWSER`);
+let chromium;
+try {
+  ({ chromium } = await import("playwright-core"));
+} catch {
+  skip("playwright-core is not installed; run `npm ci` in tests/browser");
+}
+mkdirSync(output, { recursive: true });
+let passed = 0;
+let failed = 0;
+async function check(name, work) {
+  try {
+    await work();
+    ++passed;
+    console.log(`ok      ${name}`);
+  } catch (error) {
+    ++failed;
+    console.log(`FAILED  ${name}\n${error.stack ?? error}`);
+  }
+}
+const same = (found, wanted, what) => {
+  if (found !== wanted) throw new Error(`${what}: ${found}, not ${wanted}`);
+};
+const run = (...options) => spawnSync(talus, options, { encoding: "utf8", cwd: output });
+const small = ["--set", "solver.target_particle_count=500", "--set", "solver.end_time_s=20"];
+
+const file = join(output, "twin.html");
+const site = join(output, "site");
+const made = run("publish", "-o", file, "--force", "--without-engine", ...small);
+if (made.status !== 0) throw new Error(`talus publish: ${made.status}\n${made.stderr}`);
+const served = run("publish", "-o", site, "--folder", "--force", "--without-engine", ...small);
+if (served.status !== 0) throw new Error(`talus publish --folder: ${served.status}\n${served.stderr}`);
+
+const browser = await chromium.launch({ executablePath: browserPath, args: ["--headless", "--no-sandbox", "--use-angle=swiftshader",
+  "--enable-unsafe-swiftshader", "--ignore-gpu-blocklist", "--webgl-msaa-sample-count=0", "--disable-background-networking",
+  "--disable-component-update", "--no-first-run"] });
+
+/** Opens a twin; `asked`: addresses that it asked for, `problems`: what the console said. */
+async function open(address, viewport, settings = {}) {
+  const context = await browser.newContext({ viewport, acceptDownloads: true, reducedMotion: "reduce", ...settings });
+  const page = await context.newPage();
+  const asked = [];
+  const problems = [];
+  page.on("request", (request) => asked.push(request.url()));
+  page.on("console", (message) => ["error", "warning"].includes(message.type()) && !/GPU stall|GL Driver/.test(message.text()) && problems.push(message.text()));
+  page.on("pageerror", (error) => problems.push(error.stack ?? String(error)));
+  await page.goto(address);
+  await page.waitForSelector(".topbar h1", { timeout: 60_000 });
+  await page.waitForFunction(() => document.querySelector(".clock")?.textContent.startsWith("0.00"), null, { timeout: 60_000 });
+  return { page, asked, problems, close: () => context.close() };
+}
+const clock = (page) => page.locator(".clock").innerText().then((text) => Number.parseFloat(text));
+const silent = ({ asked, problems }, own) => {
+  const foreign = asked.filter((url) => !own(url));
+  if (foreign.length > 0) throw new Error(`asked for ${foreign.map((url) => url.slice(0, 200)).join(", ")}`);
+  if (problems.length > 0) throw new Error(problems.join("\n"));
+};
+/** Of a picture of the view, as a PNG: an empty one is small. */
+const pictureBytes = async (page) => (await page.screenshot({ clip: await page.locator(".view canvas").boundingBox() })).length;
+
+try {
+  await check("what a twin contains is said before it is written", async () => {
+    for (const line of [/^ {2}run A: to /m, /^ {2}data of: /m, /^ {2}orthophoto: none$/m, /^ {2}size: /m]) {
+      if (!line.test(made.stdout)) throw new Error(`no ${line} in\n${made.stdout}`);
+    }
+  });
+
+  const address = pathToFileURL(file).href;
+  const desktop = await open(address, { width: 1400, height: 860 });
+  const { page } = desktop;
+  await check("it opens from disk at the start of the run, with the scene's name", async () => {
+    if (!(await page.locator("h1").innerText()).startsWith("Sham Tseng")) throw new Error("another title");
+    same(await clock(page), 0, "time shown");
+    const bytes = await pictureBytes(page);
+    if (bytes < 100_000) throw new Error(`the view is empty: ${bytes} bytes`);
+  });
+  await check("nothing is refused while it opens", async () => same((await page.locator(".toasts").allInnerTexts()).join("").trim(), "", "notices"));
+  await check("what needs a program is not there", async () => {
+    for (const name of ["Share", "Save", "Run", "Step", "Restart", "Draw a barrier", "Put a probe here and run"]) {
+      same(await page.getByRole("button", { name, exact: true }).filter({ visible: true }).count(), 0, `buttons ${name}`);
+    }
+    same(await page.getByRole("tab", { name: "Calibrate" }).filter({ visible: true }).count(), 0, "tabs Calibrate");
+  });
+  await check("the recording plays, and goes to the time that is chosen", async () => {
+    await page.getByRole("button", { name: "Play the recording" }).click();
+    await page.waitForFunction(() => Number.parseFloat(document.querySelector(".clock").textContent) > 1);
+    await page.getByRole("button", { name: "Pause the recording" }).click();
+    const line = await page.locator(".timeline").boundingBox();
+    await page.mouse.click(line.x + line.width / 2, line.y + line.height / 2);
+    await page.waitForFunction(() => Math.abs(Number.parseFloat(document.querySelector(".clock").textContent) - 10) < 1);
+    await page.screenshot({ path: join(output, "desktop.png") });
+  });
+  await check("a map layer is drawn with its legend", async () => {
+    await page.getByLabel("Map layer on the ground").selectOption("peak_depth");
+    await page.waitForFunction(() => /Peak depth/.test(document.querySelector("main.middle").textContent));
+    await page.screenshot({ path: join(output, "layer.png") });
+  });
+  await check("charts and tables have the run's values", async () => {
+    for (const [tab, text] of [["Time", /Volume/], ["Impact", /House|kPa/], ["Balance", /m³/]]) {
+      await page.getByRole("tab", { name: tab }).click();
+      await page.waitForFunction((pattern) => new RegExp(pattern).test(document.querySelector(".tab-panels").innerText), text.source);
+    }
+  });
+  await check("a probe reads depth and speed from the recording", async () => {
+    await page.getByRole("tab", { name: "Points" }).click();
+    await page.getByRole("button", { name: "Put a probe" }).click();
+    const view = await page.locator(".view canvas").boundingBox();
+    await page.mouse.click(view.x + view.width / 2, view.y + view.height / 2);
+    await page.waitForFunction(() => /peaks\s.*\sm,\s.*\sm\/s/.test(document.querySelector(".probes")?.innerText ?? ""));
+  });
+  await check("report, tables and journal are saved from the file", async () => {
+    await page.getByRole("button", { name: "Export" }).click();
+    const [download] = await Promise.all([page.waitForEvent("download"), page.getByRole("button", { name: /^Save \d+ files/ }).click()]);
+    const bytes = readFileSync(await download.path());
+    for (const name of ["report.html", "front.csv", "journal.json"]) {
+      if (!bytes.includes(name)) throw new Error(`${name} is not in the archive`);
+    }
+    await page.keyboard.press("Escape");
+  });
+  await check("no request leaves the page, and the console is silent", async () => silent(desktop, (url) => url === address || url.startsWith("blob:") || url.startsWith("data:")));
+  await check("its own policy refuses the network", async () => {
+    const reached = await page.evaluate(() => fetch("https://example.org/").then(() => true, () => false));
+    same(reached, false, "reached");
+    const policy = await page.locator("meta[http-equiv=Content-Security-Policy]").getAttribute("content");
+    for (const part of ["default-src 'none'", "connect-src 'none'", "script-src 'sha256-"]) if (!policy.includes(part)) throw new Error(`no ${part} in ${policy}`);
+  });
+  await desktop.close();
+
+  await check("on a phone the view, the time and the figures have room", async () => {
+    const phone = await open(address, { width: 390, height: 844 }, { hasTouch: true, isMobile: true, deviceScaleFactor: 1 });
+    same(await phone.page.evaluate(() => document.documentElement.scrollWidth <= innerWidth), true, "no sideways scrolling");
+    await phone.page.getByRole("button", { name: "Play the recording" }).tap();
+    await phone.page.waitForFunction(() => Number.parseFloat(document.querySelector(".clock").textContent) > 2);
+    same((await phone.page.locator(".toasts").allInnerTexts()).join("").trim(), "", "notices");
+    await phone.page.screenshot({ path: join(output, "phone.png") });
+    silent(phone, (url) => url === address || url.startsWith("blob:") || url.startsWith("data:"));
+    await phone.close();
+  });
+
+  await check("a folder opens from a web server, and asks for its own files alone", async () => {
+    const types = { ".html": "text/html", ".js": "text/javascript", ".css": "text/css", ".bin": "application/octet-stream" };
+    const server = createServer((request, response) => {
+      const path = join(site, request.url === "/" ? "index.html" : request.url.slice(1));
+      if (!existsSync(path)) return response.writeHead(404).end();
+      response.writeHead(200, { "Content-Type": types[extname(path)] ?? "application/octet-stream" }).end(readFileSync(path));
+    });
+    await new Promise((done) => server.listen(0, "127.0.0.1", done));
+    const base = `http://127.0.0.1:${server.address().port}/`;
+    try {
+      const web = await open(base, { width: 1200, height: 800 });
+      silent(web, (url) => ["", "page.js", "page.css", "tape.bin", "favicon.ico"].some((name) => url === base + name) || url.startsWith("blob:"));
+      await web.close();
+    } finally {
+      server.close();
+    }
+  });
+
+  await check("a name is text, never markup, and a damaged file says so in a sentence", async () => {
+    const html = readFileSync(file, "utf8");
+    const hostile = join(output, "hostile.html");
+    const made = run("publish", "-o", hostile, "--force", "--without-engine", "--no-files", ...small, "--set", 'scene.title="</script><img src=x onerror=document.title=1>"');
+    same(made.status, 0, made.stderr);
+    const named = await open(pathToFileURL(hostile).href, { width: 900, height: 700 });
+    same(await named.page.locator("h1").innerText(), "</script><img src=x onerror=document.title=1>", "title");
+    same(await named.page.locator("img[src=x]").count(), 0, "pictures of a name");
+    await named.close();
+    const damaged = join(output, "damaged.html");
+    writeFileSync(damaged, html.replace(/(id="tape">[A-Za-z0-9+/]{400})[^<]*/, "$1"));
+    const context = await browser.newContext();
+    const broken = await context.newPage();
+    await broken.goto(pathToFileURL(damaged).href);
+    await broken.getByRole("alert").waitFor();
+    if (!/cut off/.test(await broken.getByRole("alert").innerText())) throw new Error(await broken.getByRole("alert").innerText());
+    await context.close();
+  });
+
+  const engine = run("publish", "-o", join(output, "engine.html"), "--force", ...small);
+  if (engine.status === 0) {
+    // With an engine the page computes: see the checks there.
+    console.log("the program has an engine");
+  } else {
+    console.log("SKIPPED the engine in the page: this program was built without it");
+    await check("without an engine, a twin with one is refused in one sentence, and nothing is written", async () => {
+      same(engine.status, 2, "exit code");
+      same(engine.stderr.trim().split("\n").length, 1, "lines");
+      if (!/--without-engine/.test(engine.stderr)) throw new Error(engine.stderr);
+      same(existsSync(join(output, "engine.html")), false, "written");
+    });
+  }
+} finally {
+  await browser.close();
+}
+console.log(`${passed} passed, ${failed} failed`);
+process.exit(failed === 0 && passed > 0 ? 0 : 1);

@@ -1,0 +1,77 @@
+#include "publish/page.hpp"
+
+#include <algorithm>
+#include <string>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace talus::test {
+namespace {
+
+using publish::Content;
+using publish::PageFiles;
+using testing::HasSubstr;
+using testing::Not;
+
+constexpr PageFiles page{.script = "const a = \"</script>\";", .style = "p { color: red }", .worker = "onmessage = 1;"};
+
+std::size_t count(const std::string& text, const std::string& part) {
+    std::size_t found = 0;
+    for (std::size_t at = text.find(part); at != std::string::npos; at = text.find(part, at + 1)) ++found;
+    return found;
+}
+
+TEST(PublishedPage, holds_all_and_allows_no_network) {
+    const std::string html = publish::one_file(page, {.title = "Slope", .about = {{"version", 1}}, .tape = "TLST"});
+    EXPECT_THAT(html, HasSubstr("default-src 'none'"));
+    EXPECT_THAT(html, HasSubstr("connect-src 'none'"));
+    EXPECT_THAT(html, HasSubstr("<script type=\"text/plain\" id=\"tape\">VExTVA==</script>"));
+    EXPECT_THAT(html, HasSubstr("<style>p { color: red }</style>"));
+    for (const char* loads : {" src=", "href=", "wasm-unsafe-eval", "unsafe-inline"})
+        EXPECT_THAT(html, Not(HasSubstr(loads)));
+}
+
+TEST(PublishedPage, the_policy_names_the_script_as_it_stands_in_the_file) {
+    const std::string html = publish::one_file(page, {.title = "Slope", .about = {}, .tape = ""});
+    // printf '%s' 'const a = "<\/script>";' | openssl dgst -sha256 -binary | base64
+    EXPECT_THAT(html, HasSubstr("script-src 'sha256-bLG/30R6Sis3fD27sAPd/l/wuZ5uhucw1tG23IXehVc='"));
+    EXPECT_THAT(html, HasSubstr("<script type=\"module\">const a = \"<\\/script>\";</script>"));
+}
+
+TEST(PublishedPage, a_title_is_text) {
+    const std::string title = "</title></script><img src=x onerror=alert(1)> & \"Co\"";
+    const std::string html = publish::one_file(page, {.title = title, .about = {{"title", title}}, .tape = ""});
+    EXPECT_THAT(html, HasSubstr("<title>&lt;/title&gt;&lt;/script&gt;&lt;img src=x onerror=alert(1)&gt; &amp; "
+                                "&quot;Co&quot; · talus</title>"));
+    EXPECT_THAT(html, Not(HasSubstr("<img")));
+    EXPECT_EQ(count(html, "</script>"), 3U);  // of about, tape and the page
+}
+
+TEST(PublishedPage, an_engine_comes_with_its_scene_and_may_be_compiled) {
+    const Content content{
+        .title = "Slope", .about = {}, .tape = "", .engine = publish::Engine{"js", "wasm"}, .scene = "packed"};
+    const std::string html = publish::one_file(page, content);
+    EXPECT_THAT(html, HasSubstr("'wasm-unsafe-eval'"));
+    for (const char* id : {"scene", "worker", "engine-script", "engine"}) {
+        EXPECT_THAT(html, HasSubstr("<script type=\"text/plain\" id=\"" + std::string(id) + "\">"));
+    }
+}
+
+TEST(PublishedPage, a_folder_has_what_its_page_loads) {
+    const auto files = publish::folder(page, {.title = "Slope", .about = {{"version", 1}}, .tape = "TLST"});
+    const auto content = [&](const std::string& name) {
+        const auto found =
+            std::find_if(files.begin(), files.end(), [&](const publish::File& f) { return f.name == name; });
+        return found == files.end() ? std::string("none") : found->bytes;
+    };
+    EXPECT_EQ(content("tape.bin"), "TLST");
+    EXPECT_EQ(content("page.js"), page.script);
+    EXPECT_EQ(content("page.css"), page.style);
+    EXPECT_THAT(content("index.html"), HasSubstr("connect-src 'self'"));
+    EXPECT_THAT(content("index.html"), HasSubstr("<script type=\"module\" src=\"page.js\">"));
+    EXPECT_EQ(content("talus_engine.wasm"), "none");
+}
+
+}  // namespace
+}  // namespace talus::test
