@@ -1,4 +1,7 @@
+#include <array>
+#include <cmath>
 #include <optional>
+#include <tuple>
 #include <utility>
 
 #include <fmt/format.h>
@@ -7,6 +10,64 @@
 
 namespace talus::params {
 namespace {
+
+/// Pore pressure that follows from the soil (Iverson & George 2014).
+void declare_evolving_pore_pressure(Declaration<MaterialSpec>& s) {
+    s.choice(
+         "pore_pressure", &MaterialSpec::pore_pressure, {"prescribed", "dilatancy"},
+         "Where pore pressure comes from: prescribed by pore_pressure_ratio, or computed from how the soil dilates, "
+         "contracts and drains (Iverson & George 2014). Then pore_pressure_ratio is where it starts; 0: hydrostatic.")
+        .needs(stress());
+    s.optional_key("permeability_m2", "m2", &MaterialSpec::permeability, between(1e-13, 1e-8),
+                   "pore_pressure = \"dilatancy\" needs it",
+                   "Permeability of the debris at solid_fraction; it falls to 1/e where grains fill 0.04 more.");
+    s.optional_key("solid_fraction", "", &MaterialSpec::solid_fraction, between(0.4, 0.75),
+                   "pore_pressure = \"dilatancy\" needs it",
+                   "Share of the volume that grains fill when debris starts; releases and inflows may have their own.");
+    s.optional_key("critical_solid_fraction", "", &MaterialSpec::critical_solid_fraction, between(0.5, 0.7),
+                   "pore_pressure = \"dilatancy\" needs it",
+                   "Solid fraction at which slow shear neither dilates nor contracts; looser debris liquefies.");
+    s.key("pore_fluid_viscosity_Pas", "Pa s", &MaterialSpec::pore_fluid_viscosity, between(0.001, 0.1),
+          "Viscosity of the muddy water in the pores, with pore_pressure = \"dilatancy\".");
+    s.key("pore_fluid_density_kgpm3", "kg/m3", &MaterialSpec::pore_fluid_density, between(1000, 1300),
+          "Density of the muddy water in the pores, with pore_pressure = \"dilatancy\".");
+    s.key("compressibility", "", &MaterialSpec::compressibility, between(0.003, 0.3),
+          "a of the skeleton of grains, with pore_pressure = \"dilatancy\": its compressibility is a / (solid fraction "
+          "x (effective stress + 1000 Pa)).");
+}
+
+/// What a scene with evolving pore pressure lacks, or says twice.
+std::optional<Violation> contradicts_evolving_pore_pressure(const MaterialSpec& m) {
+    const std::array needed = {std::tuple{m.permeability, "permeability_m2", "1e-13 to 1e-8 m2"},
+                               std::tuple{m.solid_fraction, "solid_fraction", "0.4 to 0.75"},
+                               std::tuple{m.critical_solid_fraction, "critical_solid_fraction", "0.5 to 0.7"}};
+    if (m.pore_pressure == PorePressure::prescribed) {
+        for (const auto& [value, key, range] : needed) {
+            if (!value) continue;
+            return Violation{key, fmt::format(" = {} has no effect while pore_pressure = \"prescribed\"; set "
+                                              "pore_pressure = \"dilatancy\" or leave it out",
+                                              *value)};
+        }
+        return {};
+    }
+    for (const auto& [value, key, range] : needed) {
+        if (value) continue;
+        return Violation{key, fmt::format(": missing; pore_pressure = \"dilatancy\" needs it, {}", range)};
+    }
+    if (m.pore_pressure_decay_time) {
+        return Violation{
+            "pore_pressure_decay_time_s",
+            ": is given beside pore_pressure = \"dilatancy\", which computes how the pressure falls; leave "
+            "one of them out"};
+    }
+    const double bulk = m.grain_density * *m.solid_fraction + m.pore_fluid_density * (1 - *m.solid_fraction);
+    if (std::abs(bulk - m.rest_density) <= 0.05 * m.rest_density) return {};
+    return Violation{
+        "rest_density_kgpm3",
+        fmt::format(" = {} is refused beside pore_pressure = \"dilatancy\"; with solid_fraction = {}, "
+                    "grain_density_kgpm3 = {} and pore_fluid_density_kgpm3 = {} it must be within 5 % of {:.0f}",
+                    m.rest_density, *m.solid_fraction, m.grain_density, m.pore_fluid_density, bulk)};
+}
 
 /// Resistance other than Coulomb friction and viscosity.
 void declare_resistance(Declaration<MaterialSpec>& s) {
@@ -46,11 +107,12 @@ void declare_resistance(Declaration<MaterialSpec>& s) {
         .assumes("Pore-pressure ratio")
         .live_as()
         .needs(stress())
-        .also_called({"r_u", "pore_pressure"});
+        .also_called({"r_u"});
     s.optional_key("pore_pressure_decay_time_s", "s", &MaterialSpec::pore_pressure_decay_time, between(0.001, 1e9),
                    "pore pressure stays",
                    "Time in which the pore-pressure ratio falls to 1/e, from when debris starts to move, comes in or "
                    "is entrained.");
+    declare_evolving_pore_pressure(s);
     s.key("rest_density_kgpm3", "kg/m3", &MaterialSpec::rest_density, between(1, 30000), "Bulk density of the debris.")
         .assumes("Bulk density")
         .live_as()
@@ -168,6 +230,9 @@ Section declare_material() {
             "one of them out"};
     });
     s.rule([](const MaterialSpec& material, const SceneSpec&, double) { return contradicts_samosat(material); });
+    s.rule([](const MaterialSpec& material, const SceneSpec&, double) {
+        return contradicts_evolving_pore_pressure(material);
+    });
     return s.take();
 }
 

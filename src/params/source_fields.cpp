@@ -7,6 +7,18 @@
 
 namespace talus::params {
 
+namespace {
+
+std::optional<Violation> lone_solid_fraction(const std::optional<double>& fraction, const SceneSpec& scene) {
+    if (!fraction || scene.material.pore_pressure == PorePressure::dilatancy) return {};
+    return Violation{"solid_fraction",
+                     fmt::format(" = {} has no effect while material.pore_pressure = \"prescribed\"; set "
+                                 "material.pore_pressure = \"dilatancy\" or leave it out",
+                                 *fraction)};
+}
+
+}  // namespace
+
 Section declare_release() {
     Declaration<ReleaseSpec> s("release",
                                "A body of debris that starts to move at one moment; a scene needs one, or an inflow.",
@@ -40,6 +52,12 @@ Section declare_release() {
     s.optional_key("pore_pressure_ratio", "", &ReleaseSpec::pore_pressure_ratio, between(0, 1), "that of the material",
                    "Pore-pressure ratio r_u of this body when it starts.")
         .needs(stress());
+    s.optional_key("solid_fraction", "", &ReleaseSpec::solid_fraction, between(0.4, 0.75), "that of the material",
+                   "Share of this body's volume that grains fill when it starts, with material.pore_pressure = "
+                   "\"dilatancy\".");
+    s.rule([](const ReleaseSpec& release, const SceneSpec& scene, double) -> std::optional<Violation> {
+        return lone_solid_fraction(release.solid_fraction, scene);
+    });
     s.exactly_one_of({"thickness_m", "thickness_attribute", "thickness_raster", "volume_m3"}, "file");
     s.rule([](const ReleaseSpec& release, const SceneSpec& scene, double) -> std::optional<Violation> {
         // A release that a user draws waits until it is triggered: it has no start time of its own.
@@ -130,6 +148,12 @@ Section declare_inflow() {
            "density_kgpm3; linear between rows, nothing before the first and after the last. Several surges are rows "
            "without discharge between them.")
         .required = true;
+    s.optional_key("solid_fraction", "", &InflowSpec::solid_fraction, between(0.4, 0.75), "that of the material",
+                   "Share of the volume that grains fill in what flows in, with material.pore_pressure = "
+                   "\"dilatancy\".");
+    s.rule([](const InflowSpec& inflow, const SceneSpec& scene, double) -> std::optional<Violation> {
+        return lone_solid_fraction(inflow.solid_fraction, scene);
+    });
     s.exactly_one_of({"line_m", "file", "polygon_m", "polygon_file"});
     s.rule([](const InflowSpec& inflow, const SceneSpec&, double) -> std::optional<Violation> {
         if (!inflow.direction || inflow.over_area()) return {};

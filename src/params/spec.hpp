@@ -67,6 +67,7 @@ struct ReleaseSpec {
     double start_time = 0;                      ///< s
     double shift_along = 0, shift_across = 0;   ///< m in plan, downslope, and to the left of that direction
     std::optional<double> pore_pressure_ratio;  ///< r_u; absent: that of the material
+    std::optional<double> solid_fraction;       ///< with evolving pore pressure; absent: that of the material
     bool operator==(const ReleaseSpec&) const = default;
 };
 
@@ -90,8 +91,9 @@ struct InflowSpec {
     std::string file, layer;
     std::vector<PlanPoint> polygon;  ///< three places or more
     std::string polygon_file;
-    std::optional<double> direction;  ///< degrees clockwise from north, of inflow over an area; absent: downhill
-    std::string hydrograph;           ///< CSV
+    std::optional<double> direction;       ///< degrees clockwise from north, of inflow over an area; absent: downhill
+    std::string hydrograph;                ///< CSV
+    std::optional<double> solid_fraction;  ///< with evolving pore pressure; absent: that of the material
     [[nodiscard]] bool over_area() const { return !polygon.empty() || !polygon_file.empty(); }
     bool operator==(const InflowSpec&) const = default;
 };
@@ -156,6 +158,9 @@ struct FlowPathSpec {
 };
 
 /// `[material]`
+/// Where pore pressure comes from: numbers of the scene, or the state of the soil (docs/pore-pressure.md).
+enum class PorePressure { prescribed, dilatancy };
+
 struct MaterialSpec {
     double rest_density = 2000;                           ///< kg/m3
     double friction_coefficient = 0.4;                    ///< on ground, and on buildings and inside unless set
@@ -173,6 +178,13 @@ struct MaterialSpec {
     double cohesion = 0;                                  ///< Pa, shear strength without pressure
     double pore_pressure_ratio = 0;                       ///< r_u, at the start of the debris
     std::optional<double> pore_pressure_decay_time;       ///< s; absent: constant
+    PorePressure pore_pressure = PorePressure::prescribed;
+    std::optional<double> permeability;                   ///< m2, at `solid_fraction`
+    std::optional<double> solid_fraction;                 ///< share of the volume that grains fill
+    std::optional<double> critical_solid_fraction;        ///< at which slow shear does not change the volume
+    double pore_fluid_viscosity = 0.005;                  ///< Pa s
+    double pore_fluid_density = 1100;                     ///< kg/m3
+    double compressibility = 0.015;                       ///< of the grains' skeleton
     std::optional<double> inertial_friction_coefficient;  ///< internal, of fast shear; absent: independent of the rate
     double inertial_number = 0.279;  ///< I_0, at which friction is halfway between its slow and fast values
     double grain_diameter = 0.01;    ///< m

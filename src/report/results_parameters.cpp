@@ -64,9 +64,25 @@ void add_resistances(Json& rows, const scene::Scene& scene) {
                                    plain(material.samosat_offset)));
     }
     if (material.cohesion > 0) add("Cohesion", fmt::format("{} Pa", plain(material.cohesion)));
+    const bool evolves = material.pore_pressure == params::PorePressure::dilatancy;
+    if (evolves) {
+        add("Soil",
+            fmt::format("solid fraction {}, critical {}, permeability {} m², a = {}",
+                        plain(material.solid_fraction.value_or(0)), plain(material.critical_solid_fraction.value_or(0)),
+                        plain(material.permeability.value_or(0)), plain(material.compressibility)));
+        add("Pore fluid",
+            fmt::format("{} Pa s, {} kg/m³", plain(material.pore_fluid_viscosity), plain(material.pore_fluid_density)));
+    }
     for (const params::ReleaseSpec& release : scene.spec.releases) {
+        if (release.solid_fraction) {
+            add(fmt::format("Solid fraction, {}", release.name), plain(*release.solid_fraction));
+        }
         const double ratio = release.pore_pressure_ratio.value_or(material.pore_pressure_ratio);
         if (ratio <= 0) continue;
+        if (evolves) {
+            add(fmt::format("Pore pressure, {}", release.name), fmt::format("ratio {} at the start", plain(ratio)));
+            continue;
+        }
         const std::string decay = material.pore_pressure_decay_time
                                       ? fmt::format(", falls to 1/e in {} s", plain(*material.pore_pressure_decay_time))
                                       : ", stays";
@@ -263,23 +279,26 @@ Json method(const scene::Scene& scene) {
     const auto& all_barriers = scene.spec.barriers;
     const auto given = [](const auto& value) { return value ? Json(*value) : Json(); };
     const bool pairwise = scene.spec.solver.internal_friction == params::InternalFriction::pair;
-    return {{"pairwise_internal_friction", pairwise},
-            {"turbulent_friction",
-             turbulent ? Json{{"thickness_m", given(material.turbulent_friction_thickness)}} : Json()},
-            {"laminar_drag", params::laminar_viscosity_of(material) > 0 || any_zone([](const params::ZoneSpec& zone) {
-                                 return zone.laminar_viscosity.value_or(0) > 0;
-                             })},
-            {"samosat", static_cast<bool>(material.samosat)},
-            {"cohesion", material.cohesion > 0},
-            {"pore_pressure",
-             has_pore_pressure(scene.spec) ? Json{{"decay_time_s", given(material.pore_pressure_decay_time)}} : Json()},
-            {"inertial_friction", material.inertial_friction_coefficient.has_value()},
-            {"viscosity_on_ground", static_cast<bool>(material.viscosity_on_ground)},
-            {"flight", scene.spec.solver.flight},
-            {"stems", any_zone([](const params::ZoneSpec& zone) { return zone.stem_density > 0; })},
-            {"nets", std::any_of(all_barriers.begin(), all_barriers.end(),
-                                 [](const params::BarrierSpec& b) { return b.passing_share.has_value(); })},
-            {"zones", !all_zones.empty()}};
+    return {
+        {"pairwise_internal_friction", pairwise},
+        {"turbulent_friction",
+         turbulent ? Json{{"thickness_m", given(material.turbulent_friction_thickness)}} : Json()},
+        {"laminar_drag", params::laminar_viscosity_of(material) > 0 || any_zone([](const params::ZoneSpec& zone) {
+                             return zone.laminar_viscosity.value_or(0) > 0;
+                         })},
+        {"samosat", static_cast<bool>(material.samosat)},
+        {"cohesion", material.cohesion > 0},
+        {"evolving_pore_pressure", material.pore_pressure == params::PorePressure::dilatancy},
+        {"pore_pressure", has_pore_pressure(scene.spec) && material.pore_pressure == params::PorePressure::prescribed
+                              ? Json{{"decay_time_s", given(material.pore_pressure_decay_time)}}
+                              : Json()},
+        {"inertial_friction", material.inertial_friction_coefficient.has_value()},
+        {"viscosity_on_ground", static_cast<bool>(material.viscosity_on_ground)},
+        {"flight", scene.spec.solver.flight},
+        {"stems", any_zone([](const params::ZoneSpec& zone) { return zone.stem_density > 0; })},
+        {"nets", std::any_of(all_barriers.begin(), all_barriers.end(),
+                             [](const params::BarrierSpec& b) { return b.passing_share.has_value(); })},
+        {"zones", !all_zones.empty()}};
 }
 
 Json inputs(const scene::Scene& scene) {

@@ -24,6 +24,7 @@
 #include "scene/plausibility.hpp"
 #include "scene/suspect_ground.hpp"
 #include "scene/viscosity_limit.hpp"
+#include "scene/warning.hpp"
 
 namespace talus::scene {
 namespace {
@@ -189,6 +190,17 @@ Extent covered_extent(const terrain::Terrain& terrain) {
     return terrain.elevation().geometry.extent().grown(-terrain.cell() / 2);
 }
 
+/// What the result of a single run leaves open.
+void note_solid_fraction(Scene& scene) {
+    const params::MaterialSpec& material = scene.spec.material;
+    if (material.pore_pressure != params::PorePressure::dilatancy || !material.solid_fraction) return;
+    scene.notes.push_back(as_warning(fmt::format(
+        "a solid fraction is known to 0.02 at best, and decides whether debris liquefies or stiffens: a single run "
+        "with "
+        "material.solid_fraction = {:.4g} says little; run the ensemble --vary material.solid_fraction={:.4g}:{:.4g}",
+        *material.solid_fraction, *material.solid_fraction - 0.02, *material.solid_fraction + 0.02)));
+}
+
 Result<Scene> assemble_scene(const ParsedScene& parsed) {
     Scene scene;
     scene.file = parsed.file;
@@ -220,6 +232,7 @@ Result<Scene> assemble_scene(const ParsedScene& parsed) {
     TALUS_TRY(check_alerts(parsed, scene));
     TALUS_TRY(particles ? check_limits(parsed, scene) : check_depth_averaged(parsed, scene));
     TALUS_TRY(apply_option(parsed, scene));
+    note_solid_fraction(scene);
     settle_geoid_height(scene);
     const ReachableGround reachable =
         reachable_ground(scene.terrain, scene.releases, travel_angle_deg / degrees_per_radian);

@@ -27,6 +27,10 @@ void append_particles(State& state, const State& more, std::uint32_t first_id) {
         p.asleep = 0;
         state.set_particle(state.count + k, p);
     }
+    if (!more.soil_of_id.empty()) {
+        state.soil_of_id.resize(first_id);
+        state.soil_of_id.insert(state.soil_of_id.end(), more.soil_of_id.begin(), more.soil_of_id.end());
+    }
     state.count = count;
     state.seeded += more.seeded;
     state.outflow += more.outflow;
@@ -51,14 +55,22 @@ void set_density(State& state, std::uint32_t particle, double density) {
     state.density_of_id[id] = static_cast<float>(density);
 }
 
-void set_entry(const Model& model, State& state, std::uint32_t particle, double time, double pore_pressure_ratio) {
-    if (!(model.pore_pressure_decay_time > 0) && pore_pressure_ratio < 0) return;
+void set_entry(const Model& model, State& state, std::uint32_t particle, double time, double pore_pressure_ratio,
+               std::optional<double> solid_fraction) {
+    if (!(model.pore_pressure_decay_time > 0) && pore_pressure_ratio < 0 && !solid_fraction) return;
     const std::uint32_t id = state.id[particle];
     if (state.entry_of_id.size() <= id) {
         state.entry_of_id.reserve(state.id.size());
         state.entry_of_id.resize(std::size_t{id} + 1);
     }
-    state.entry_of_id[id] = {static_cast<float>(time), static_cast<float>(pore_pressure_ratio)};
+    state.entry_of_id[id] = {static_cast<float>(time), static_cast<float>(pore_pressure_ratio),
+                             static_cast<float>(solid_fraction.value_or(-1))};
+}
+
+void make_room_for_soil(const Model& model, State& state) {
+    if (!model.evolving_pressure.on || state.soil_of_id.size() >= state.seeded) return;
+    state.soil_of_id.reserve(state.room());
+    state.soil_of_id.resize(state.seeded);
 }
 
 void remove_particles(State& state, std::uint32_t first, std::uint32_t last) {

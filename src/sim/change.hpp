@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 
 #include "core/geometry.hpp"
 #include "sim/ground.hpp"
@@ -21,7 +22,12 @@ std::uint32_t add_particle(State& state, const LocalPoint& position, const Local
 void set_density(State& state, std::uint32_t particle, double density);
 
 /// Says when a particle came in, s, and with which r_u (negative: the material's), if its pore pressure depends on it.
-void set_entry(const Model& model, State& state, std::uint32_t particle, double time, double pore_pressure_ratio = -1);
+/// `solid_fraction`: of its soil, where pore pressure evolves.
+void set_entry(const Model& model, State& state, std::uint32_t particle, double time, double pore_pressure_ratio = -1,
+               std::optional<double> solid_fraction = {});
+
+/// With evolving pore pressure, soil_of_id must have an element per particle ever added before a step.
+void make_room_for_soil(const Model& model, State& state);
 
 /// Removes the particles with ids [first, last); those that left the terrain remain counted as outflow.
 void remove_particles(State& state, std::uint32_t first, std::uint32_t last);

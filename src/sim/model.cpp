@@ -25,6 +25,7 @@ void set_material(Model& model, const params::MaterialSpec& material) {
     model.cohesion = material.cohesion;
     model.pore_pressure_ratio = material.pore_pressure_ratio;
     model.pore_pressure_decay_time = material.pore_pressure_decay_time.value_or(0);
+    model.evolving_pressure = evolving_pressure_of(material);
     model.inertial_friction = {};
     if (material.inertial_friction_coefficient) {
         model.inertial_friction = {

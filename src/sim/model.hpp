@@ -10,6 +10,7 @@
 #include "params/time_step.hpp"
 #include "sim/physics/boundary_table.hpp"
 #include "sim/physics/kernel.hpp"
+#include "sim/physics/pore_pressure.hpp"
 #include "sim/physics/samosat.hpp"
 #include "terrain/ground_cover.hpp"
 
@@ -21,6 +22,7 @@ struct ReleaseGroup {
     double start_time = 0;  ///< s
     std::uint32_t first_particle = 0, last_particle = 0;
     std::optional<double> pore_pressure_ratio = {};  ///< r_u at its start; absent: that of the material
+    std::optional<double> solid_fraction = {};       ///< at its start; absent: that of the material
 };
 
 /// Internal friction that grows with the shear rate, the mu(I) law.
@@ -48,6 +50,7 @@ struct ModelValues {
     double cohesion = 0;                  ///< Pa, on the ground and inside
     double pore_pressure_ratio = 0;       ///< r_u, at the start of a release
     double pore_pressure_decay_time = 0;  ///< s; 0: constant
+    EvolvingPressure evolving_pressure;   ///< of the pore fluid
     InertialFriction inertial_friction;   ///< inside
     Samosat samosat;                      ///< on the ground
     double gravity = 9.80665;             ///< m/s2

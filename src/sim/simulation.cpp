@@ -99,7 +99,10 @@ void Simulation::fetch() const {
 /// Before the stages of a step.
 void Simulation::hand_over() {
     if (device_ == nullptr) return;
-    if (std::exchange(device_is_older_, false)) device_->follow(model_, ground_, state_);
+    if (std::exchange(device_is_older_, false)) {
+        make_room_for_soil(model_, state_);
+        device_->follow(model_, ground_, state_);
+    }
     if (!std::exchange(device_is_newer_, true)) last_read_ = state_;
 }
 

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "core/geometry.hpp"
+#include "sim/physics/pore_pressure.hpp"
 #include "sim/physics/stress.hpp"
 
 namespace talus::sim {
@@ -115,6 +116,7 @@ struct Particle {
 struct Entry {
     float time = 0;                  ///< s
     float pore_pressure_ratio = -1;  ///< r_u then; negative: that of the material
+    float solid_fraction = -1;       ///< with evolving pore pressure; negative: that of the material
 };
 
 /// What a wall or roof took from a particle in the last step; a particle in a corner has two.
@@ -165,8 +167,9 @@ struct State : StateSummary {
 #define TALUS_MEMBER(array, element, name) array name;
     TALUS_PARTICLE_ARRAYS(TALUS_MEMBER)
 #undef TALUS_MEMBER
-    std::vector<float> density_of_id;  ///< kg/m3, by id; 0 and beyond its end: the rest density
-    std::vector<Entry> entry_of_id;    ///< by id, as far as r_u depends on it; not of releases, which have a start
+    std::vector<float> density_of_id;     ///< kg/m3, by id; 0 and beyond its end: the rest density
+    std::vector<Entry> entry_of_id;       ///< by id, as far as r_u depends on it; not of releases, which have a start
+    std::vector<Soil<float>> soil_of_id;  ///< by id, with evolving pore pressure; see make_room_for_soil()
 
     void resize(std::size_t n) {
 #define TALUS_RESIZE(array, element, name) sim::resize(name, n);
@@ -179,7 +182,7 @@ struct State : StateSummary {
 #define TALUS_KEEP(array, element, name) archive(name);
         TALUS_PARTICLE_ARRAYS(TALUS_KEEP)
 #undef TALUS_KEEP
-        archive(density_of_id, entry_of_id);
+        archive(density_of_id, entry_of_id, soil_of_id);
     }
     /// Particles that the arrays have room for.
     [[nodiscard]] std::size_t room() const {

@@ -270,7 +270,7 @@ void LiveRun::replace_releases(sim::Model& model, sim::State& state, Change& cha
         append_particles(state, seed.state, first);
         groups.push_back({seed.release->id, false});
         ranges.push_back({seed.release->body->name, seed.release->body->spec.start_time, first, state.seeded,
-                          seed.release->body->spec.pore_pressure_ratio});
+                          seed.release->body->spec.pore_pressure_ratio, seed.release->body->spec.solid_fraction});
     }
     groups_ = std::move(groups);
     model.releases = std::move(ranges);

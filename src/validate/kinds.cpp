@@ -10,7 +10,7 @@ std::span<const Kind> kinds() {
         spreading_cap_kind(), water_column_kind(), lake_at_rest_kind(),     free_fall_kind(),     run_up_kind(),
         wall_impact_kind(),   net_stream_kind(),   structure_impact_kind(), inflow_plane_kind(),  shear_decay_kind(),
         sheet_flow_kind(),    debris_flume_kind(), energy_line_kind(),      profile_kind(),       rough_ground_kind(),
-        scene_kind()};
+        pore_pressure_kind(), scene_kind()};
     return all;
 }
 

@@ -92,6 +92,40 @@ TEST(FieldTable, the_day_of_a_report_is_an_iso_date) {
     }
 }
 
+TEST(FieldTable, pore_pressure_that_evolves_needs_the_soil_and_contradicts_a_time_of_decay) {
+    const Section& section = *find_section("material");
+    SceneSpec spec;
+    MaterialSpec& material = spec.material;
+    const auto expect_broken = [&](const char* key, const char* says) {
+        const auto broken = broken_rule(section, spec, 0, 0);
+        ASSERT_TRUE(broken) << key;
+        EXPECT_EQ(broken->key, key);
+        EXPECT_THAT(broken->text, testing::HasSubstr(says));
+    };
+    material.permeability = 1e-10;
+    expect_broken("permeability_m2", "has no effect while pore_pressure = \"prescribed\"");
+    material = {};
+    material.pore_pressure = PorePressure::dilatancy;
+    expect_broken("permeability_m2", "missing");
+    material.permeability = 1e-10;
+    expect_broken("solid_fraction", "0.4 to 0.75");
+    material.solid_fraction = 0.6;
+    expect_broken("critical_solid_fraction", "missing");
+    material.critical_solid_fraction = 0.62;
+    EXPECT_FALSE(broken_rule(section, spec, 0, 0)) << "2650 x 0.6 + 1100 x 0.4 = 2030";
+    material.pore_pressure_decay_time = 10;
+    expect_broken("pore_pressure_decay_time_s", "leave one of them out");
+    material.pore_pressure_decay_time.reset();
+    material.rest_density = 1600;
+    expect_broken("rest_density_kgpm3", "must be within 5 % of 2030");
+
+    spec = {};
+    spec.releases.emplace_back().solid_fraction = 0.5;
+    const auto broken = broken_rule(*find_section("release"), spec, 0, 0);
+    ASSERT_TRUE(broken);
+    EXPECT_EQ(broken->key, "solid_fraction");
+}
+
 TEST(FieldTable, keys_of_measures_end_in_their_unit) {
     const std::vector<std::pair<std::string, std::string>> suffixes = {
         {"m", "_m"},   {"s", "_s"},   {"m/s", "_mps"},  {"kg/m3", "_kgpm3"},
@@ -130,7 +164,7 @@ ParameterValue other_value(const Section& section, const Parameter& p) {
         case ParameterKind::integer:
             return std::holds_alternative<std::monostate>(usual) ? std::int64_t{7} : std::get<std::int64_t>(usual) + 1;
         case ParameterKind::number:
-            for (const double candidate : {0.75, 1.75, 0.25}) {
+            for (const double candidate : {0.75, 1.75, 0.25, 0.55, 0.05, 1e-9, 1250.0}) {
                 if (p.range.contains(candidate) && toml_text(candidate) != toml_text(usual)) return candidate;
             }
             break;

@@ -225,6 +225,15 @@ TEST_P(InstructionSet, agrees_with_the_double_precision_reference) {
     expect_agreement(backend, params::InternalFriction::stress, params::KernelChoice::wendland_c2, 12, 2e-4);
 }
 
+TEST_P(InstructionSet, agrees_with_the_reference_where_pore_pressure_evolves) {
+    params::MaterialSpec material;
+    material.pore_pressure = params::PorePressure::dilatancy;
+    material.permeability = 1e-9;
+    material.solid_fraction = 0.58;
+    material.critical_solid_fraction = 0.62;
+    expect_agreement(backend, params::InternalFriction::stress, params::KernelChoice::wendland_c2, 12, 5e-4, material);
+}
+
 TEST_P(InstructionSet, agrees_with_the_reference_for_the_published_model) {
     expect_agreement(backend, params::InternalFriction::pair, params::KernelChoice::poly6_spiky, 4, 2e-4);
 }

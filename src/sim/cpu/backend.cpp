@@ -4,6 +4,7 @@
 #include <array>
 
 #include "core/max_or_nan.hpp"
+#include "sim/change.hpp"
 #include "sim/compression.hpp"
 #include "sim/particle_density.hpp"
 #include "sim/physics/contact.hpp"
@@ -66,9 +67,14 @@ void Backend::release_held(const Model& model, State& state) {
 }
 
 void Backend::apply_drag(const Model& model, const Ground& ground, State& state) {
-    if (!slows_by_speed(model)) return;
+    const bool slows = slows_by_speed(model), evolves = model.evolving_pressure.on;
+    if (!slows && !evolves) return;
     count_columns(model, ground, state);
-    run(particle_stages_.drag, model, ground, state, everything(state));
+    if (evolves) {
+        make_room_for_soil(model, state);
+        run(particle_stages_.evolve_soil, model, ground, state, everything(state));
+    }
+    if (slows) run(particle_stages_.drag, model, ground, state, everything(state));
 }
 
 void Backend::predict_positions(const Model& model, const Ground& ground, State& state) {

@@ -94,10 +94,30 @@ struct LaneParticles : LaneAccess<count> {
         Real share(1);
         for (int lane = 0; lane < count; ++lane) {
             const std::uint32_t id = data.state.id[i + static_cast<std::size_t>(lane)];
-            share.set(lane, static_cast<float>(
-                                sim::effective_share(data.model, data.state.entry_of_id, id, data.state.time)));
+            share.set(lane, static_cast<float>(sim::share_of_grains(data.model, data.state, id, data.state.time)));
         }
         return share;
+    }
+    TALUS_INLINE Soil<Real> soil() const {
+        Soil<Real> soil;
+        for (int lane = 0; lane < count; ++lane) {
+            const std::uint32_t id = data.state.id[i + static_cast<std::size_t>(lane)];
+            const Soil<float> one = soil_of(data.model, data.state.soil_of_id, data.state.entry_of_id, id);
+            soil.solid_fraction.set(lane, one.solid_fraction);
+            soil.pressure_ratio.set(lane, one.pressure_ratio);
+            soil.thickness.set(lane, one.thickness);
+            soil.dilatancy.set(lane, one.dilatancy);
+        }
+        return soil;
+    }
+    /// Of those that `moves` says.
+    TALUS_INLINE void set_soil(const Soil<Real>& soil, const Mask& moves) const {
+        for (int lane = 0; lane < count; ++lane) {
+            if (!moves.at(lane)) continue;
+            data.state.soil_of_id[data.state.id[i + static_cast<std::size_t>(lane)]] = {
+                soil.solid_fraction.at(lane), soil.pressure_ratio.at(lane), soil.thickness.at(lane),
+                soil.dilatancy.at(lane)};
+        }
     }
 
     // What the step knows of them.

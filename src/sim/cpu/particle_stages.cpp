@@ -26,6 +26,15 @@ TALUS_STAGE void drag(const StageData& data, std::size_t first, std::size_t last
     });
 }
 
+/// Pore pressure and solid fraction, where they evolve.
+TALUS_STAGE void evolve_soil(const StageData& data, std::size_t first, std::size_t last) {
+    for_each_lanes(data, first, last, [&](const Particles& at) TALUS_INLINE_LAMBDA {
+        const Mask moves = (at.mobility() > L(0)) & at.is_present();
+        if (!any(moves)) return;
+        at.set_soil(stages::evolved_soil(at, at.load(data.work.column_particles, at.i)), moves);
+    });
+}
+
 TALUS_STAGE void predict(const StageData& data, std::size_t first, std::size_t last) {
     for_each_lanes(data, first, last, [&](const Particles& at) TALUS_INLINE_LAMBDA {
         const Mask moves = at.mobility() > L(0);
@@ -136,6 +145,7 @@ TALUS_STAGE void update_sleep(const StageData& data, std::size_t first, std::siz
 
 ParticleStages make_stages(params::KernelChoice kernel) {
     ParticleStages stages{drag,
+                          evolve_soil,
                           predict,
                           begin,
                           pack_motion,

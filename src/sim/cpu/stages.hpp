@@ -14,6 +14,7 @@ using StageFunction = void (*)(const StageData& data, std::size_t first, std::si
 /// The stages of a step, compiled for one instruction set and one kernel.
 struct ParticleStages {
     StageFunction drag;         ///< speed-dependent drag; only where there is any
+    StageFunction evolve_soil;  ///< pore pressure and solid fraction; only where they evolve
     StageFunction predict;      ///< velocity and predicted position: work.predicted
     StageFunction begin;        ///< initialises work for all particles in their new order, sleeping ones included
     StageFunction pack_motion;  ///< positions and velocities in rows, for neighbours to read

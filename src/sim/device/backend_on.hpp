@@ -34,11 +34,12 @@ class BackendOn final : public Resident<Executor> {
     void release_held(const Model&, State& state) override { executor_.for_each(state.count, ReleaseHeld{data_}); }
 
     void apply_drag(const Model& model, const Ground&, State& state) override {
-        if (!slows_by_speed(model) || state.count == 0) return;
+        const bool slows = slows_by_speed(model);
+        if ((!slows && !model.evolving_pressure.on) || state.count == 0) return;
         const ColumnBox box = column_box(model, bounds(state, 0));
         executor_.for_each(static_cast<std::size_t>(box.columns * box.rows), ClearColumns{box});
         executor_.for_each(state.count, CountColumns{data_, box});
-        executor_.for_each(state.count, Drag{data_, box});
+        executor_.for_each(state.count, Drag{data_, box, slows});
     }
 
     void predict_positions(const Model&, const Ground&, State& state) override {

@@ -57,8 +57,12 @@ struct OneParticle {
     TALUS_DEVICE void set_still_time(float time) const { d.state.still_time[i] = time; }
     [[nodiscard]] TALUS_DEVICE float released() const { return d.state.held[i] != 0 ? 0.0f : 1.0f; }
     [[nodiscard]] TALUS_DEVICE float share_of_grains() const {
-        return static_cast<float>(sim::effective_share(d.model, d.state.entry_of_id, d.state.id[i], d.time));
+        return static_cast<float>(sim::share_of_grains(d.model, d.state, d.state.id[i], d.time));
     }
+    [[nodiscard]] TALUS_DEVICE Soil<float> soil() const {
+        return soil_of(d.model, d.state.soil_of_id, d.state.entry_of_id, d.state.id[i]);
+    }
+    TALUS_DEVICE void set_soil(const Soil<float>& soil) const { d.state.soil_of_id[d.state.id[i]] = soil; }
 
     // What the step knows of it.
     [[nodiscard]] TALUS_DEVICE float mobile() const { return 1; }

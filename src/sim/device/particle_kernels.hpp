@@ -59,10 +59,11 @@ struct CountColumns {
     }
 };
 
-/// Drag by speed.
+/// Pore pressure where it evolves, and drag by speed.
 struct Drag {
     Data d;
     ColumnBox box{};
+    bool slows = true;
 
     TALUS_DEVICE void operator()(std::uint32_t i) const {
         if (!d.state.moves(i)) return;
@@ -73,7 +74,9 @@ struct Drag {
             const std::uint32_t* const units = box.at(column, row);
             if (units != nullptr) counted += share * static_cast<float>(*units) * (1 / units_per_particle);
         });
-        at.set_velocity(stages::slowed_velocity(at, counted / open_share(d.model, d.ground, p, at.rank())));
+        const float in_column = counted / open_share(d.model, d.ground, p, at.rank());
+        if (d.model.evolving_pressure.on) at.set_soil(stages::evolved_soil(at, in_column));
+        if (slows) at.set_velocity(stages::slowed_velocity(at, in_column));
     }
 };
 

@@ -40,12 +40,15 @@ class Resident : public Backend {
         data_.state.density_of_id = {density_of_id_.data(), state.density_of_id.size()};
         entry_of_id_.upload(state.entry_of_id);
         data_.state.entry_of_id = {entry_of_id_.data(), state.entry_of_id.size()};
+        soil_of_id_.upload(state.soil_of_id);
+        data_.state.soil_of_id = {soil_of_id_.data(), state.soil_of_id.size()};
     }
 
     void fetch(State& state) override {
 #define TALUS_DOWNLOAD(array, element, name) download(name##_, state.count, state.name);
         TALUS_PARTICLE_ARRAYS(TALUS_DOWNLOAD)
 #undef TALUS_DOWNLOAD
+        if (!state.soil_of_id.empty()) soil_of_id_.download(state.soil_of_id);
     }
 
     void keep(const StateSummary& state) override {
@@ -113,8 +116,8 @@ class Resident : public Backend {
     void follow_model(const Model& model) {
         std::vector<ReleaseView> releases;
         for (const ReleaseGroup& release : model.releases) {
-            releases.push_back(
-                {release.start_time, release.first_particle, release.last_particle, release.pore_pressure_ratio});
+            releases.push_back({release.start_time, release.first_particle, release.last_particle,
+                                release.pore_pressure_ratio, release.solid_fraction});
         }
         releases_.upload(releases);
         const BoundaryNodes tables = model.boundary.nodes();
@@ -220,6 +223,7 @@ class Resident : public Backend {
 #undef TALUS_MEMBER
     Memory<float> density_of_id_{executor_};
     Memory<Entry> entry_of_id_{executor_};
+    Memory<Soil<float>> soil_of_id_{executor_};
     Memory<ReleaseView> releases_{executor_};
     Memory<Quad> boundary_nodes_{executor_}, by_slope_{executor_}, sticking_{executor_};
     Memory<Quad> cover_{executor_}, terrain_{executor_};

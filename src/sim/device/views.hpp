@@ -23,7 +23,7 @@ namespace talus::sim::device {
 struct ReleaseView {
     double start_time = 0;
     std::uint32_t first_particle = 0, last_particle = 0;
-    std::optional<double> pore_pressure_ratio;
+    std::optional<double> pore_pressure_ratio, solid_fraction;
 };
 
 /// See Model.
@@ -46,6 +46,7 @@ struct ParticleArrays {
 #undef TALUS_MEMBER
     std::span<const float> density_of_id;
     std::span<const Entry> entry_of_id;
+    std::span<Soil<float>> soil_of_id;
 
     /// Whether a step moves it.
     [[nodiscard]] TALUS_DEVICE bool moves(std::uint32_t i) const {

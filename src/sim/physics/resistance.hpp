@@ -27,7 +27,7 @@ inline bool has_pore_pressure(const Model& model) {
 /// Whether resistance is more than the model's three friction coefficients, and must be evaluated for every particle.
 inline bool resists_by_particle(const Model& model) {
     return !model.cover.empty() || model.cohesion > 0 || has_pore_pressure(model) || model.inertial_friction.on ||
-           model.samosat.on;
+           model.samosat.on || model.evolving_pressure.on;
 }
 
 /// When the release that a particle belongs to starts, s; 0: it came in another way.
@@ -58,6 +58,33 @@ TALUS_DEVICE double effective_share(const AnyModel& model, const Entries& entry_
     }
     if (model.pore_pressure_decay_time > 0) ratio *= std::exp(-since / model.pore_pressure_decay_time);
     return 1 - ratio;
+}
+
+/// The state of a particle's soil: that of its debris before a step has computed it. `thickness` is 0 until then.
+template <class AnyModel, class Soils, class Entries>
+TALUS_DEVICE Soil<float> soil_of(const AnyModel& model, const Soils& soil_of_id, const Entries& entry_of_id,
+                                 std::size_t id) {
+    if (id < soil_of_id.size() && soil_of_id[id].thickness > 0) return soil_of_id[id];
+    const EvolvingPressure& law = model.evolving_pressure;
+    double fraction = law.solid_fraction, ratio = model.pore_pressure_ratio > 0 ? model.pore_pressure_ratio : -1;
+    if (id < entry_of_id.size()) {
+        if (entry_of_id[id].solid_fraction > 0) fraction = entry_of_id[id].solid_fraction;
+        if (entry_of_id[id].pore_pressure_ratio >= 0) ratio = entry_of_id[id].pore_pressure_ratio;
+    }
+    for (const auto& release : model.releases) {
+        if (id < release.first_particle || id >= release.last_particle) continue;
+        fraction = release.solid_fraction.value_or(fraction);
+        ratio = release.pore_pressure_ratio.value_or(ratio);
+    }
+    return starting_soil(law, fraction, ratio);
+}
+
+/// What multiplies friction of dry debris: the share of the normal stress that the grains bear, or with evolving pore
+/// pressure that and the angle of dilatancy.
+template <class AnyModel, class AnyState>
+TALUS_DEVICE double share_of_grains(const AnyModel& model, const AnyState& state, std::size_t id, double time) {
+    if (!model.evolving_pressure.on) return effective_share(model, state.entry_of_id, id, time);
+    return friction_share(soil_of(model, state.soil_of_id, state.entry_of_id, id), model.internal_friction_coefficient);
 }
 
 /// Resistance of the ground below a particle.

@@ -61,11 +61,22 @@ double particles_in_column(const Model& model, const State& state, const Vector&
     return sum;
 }
 
+/// Debris whose soil no step has computed yet.
+struct Started {
+    const std::vector<Entry>& entry_of_id;
+    std::vector<Soil<float>> soil_of_id = {};
+};
+
+Soil<double> wide(const Soil<float>& soil) {
+    return {soil.solid_fraction, soil.pressure_ratio, soil.thickness, soil.dilatancy};
+}
+
 }  // namespace
 
 State::State(const sim::State& state)
     : time(state.time), time_step(state.time_step), previous_time_step(state.previous_time_step), step(state.step) {
     entry_of_id = state.entry_of_id;
+    for (const Soil<float>& soil : state.soil_of_id) soil_of_id.push_back(wide(soil));
     particles.resize(state.count);
     for (std::uint32_t i = 0; i < state.count; ++i) {
         Particle& p = particles[state.id[i]];
@@ -107,7 +118,9 @@ void Backend::release_held(const Model& model, State& state) {
 }
 
 void Backend::apply_drag(const Model& model, const Ground& ground, State& state) {
-    if (!slows_by_speed(model)) return;
+    const bool slows = slows_by_speed(model), evolves = model.evolving_pressure.on;
+    if (!slows && !evolves) return;
+    if (evolves) state.soil_of_id.resize(state.particles.size());
     for (std::size_t id = 0; id < state.particles.size(); ++id) {
         Particle& p = state.particles[id];
         if (p.held) continue;
@@ -116,6 +129,14 @@ void Backend::apply_drag(const Model& model, const Ground& ground, State& state)
         const double particles =
             particles_in_column(model, state, p.position) / open_share(model, ground, p.position, rank_of(id));
         const double thickness = flow_thickness(model, below, particles);
+        if (evolves) {
+            Soil<double>& soil = state.soil_of_id[id];
+            const Vector along = p.velocity - below.normal * dot(p.velocity, below.normal);
+            if (!(soil.thickness > 0)) soil = wide(soil_of(model, std::vector<Soil<float>>{}, state.entry_of_id, id));
+            soil = evolve(model.evolving_pressure, soil, model.gravity * below.normal.z, thickness, length(along),
+                          state.time_step);
+        }
+        if (!slows) continue;
         p.velocity = slowed_by_drag(model, ground_resistance(model, p.position), below, distance, thickness, p.velocity,
                                     state.time_step);
     }
@@ -133,7 +154,9 @@ void Backend::predict_positions(const Model& model, const Ground&, State& state)
 void Backend::prepare_particles(const Model& model, const Ground& ground, State& state) {
     for (std::size_t id = 0; id < state.particles.size(); ++id) {
         Particle& p = state.particles[id];
-        p.effective_share = effective_share(model, state.entry_of_id, id, state.time);
+        const bool evolved = id < state.soil_of_id.size() && state.soil_of_id[id].thickness > 0;
+        p.effective_share = evolved ? friction_share(state.soil_of_id[id], model.internal_friction_coefficient)
+                                    : share_of_grains(model, Started{state.entry_of_id}, id, state.time);
         const GroundResistance<double> resistance = ground_resistance(model, p.position);
         const double before = state.previous_time_step;
         const double pressure = before > 0 ? -p.multiplier / (before * before) : 0;

@@ -154,7 +154,7 @@ void AreaSource::inject(const Model& model, const Ground& ground, State& state) 
         const LocalPoint place = take_site(model, ground);
         const std::uint32_t i = add_particle(state, place, velocity_at(ground, place, state.time), 0);
         if (density > 0) set_density(state, i, density);
-        set_entry(model, state, i, state.time, inflow_.pore_pressure_ratio_at(state.time));
+        set_entry(model, state, i, state.time, inflow_.pore_pressure_ratio_at(state.time), inflow_.spec.solid_fraction);
         if (near_sites(place.x, place.y)) add_top(place);
         ++injected_;
     }

@@ -86,7 +86,9 @@ void InflowFeeder::inject(const Model& model, const Ground& ground, State& state
             source.add_row(model, ground, state, state.time - source.last_time);
             ++source.rows;
             const double ratio = source.inflow.pore_pressure_ratio_at(source.last_time);
-            for (std::uint32_t i = first; i < state.count; ++i) set_entry(model, state, i, source.last_time, ratio);
+            for (std::uint32_t i = first; i < state.count; ++i) {
+                set_entry(model, state, i, source.last_time, ratio, source.inflow.spec.solid_fraction);
+            }
             if (!source.inflow.has_density()) continue;
             const double density = source.inflow.density_between(before, source.last_time);
             for (std::uint32_t i = first; i < state.count; ++i) set_density(state, i, density);

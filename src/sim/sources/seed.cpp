@@ -175,8 +175,8 @@ Result<State> seed_releases(Model& model, const Ground& ground, const std::vecto
                 overburden[next] = static_cast<float>(above * below.normal.z * below.normal.z);
             }
         }
-        model.releases.push_back(
-            {releases[r].name, releases[r].spec.start_time, first, next, releases[r].spec.pore_pressure_ratio});
+        model.releases.push_back({releases[r].name, releases[r].spec.start_time, first, next,
+                                  releases[r].spec.pore_pressure_ratio, releases[r].spec.solid_fraction});
     }
     if (progress && !progress(0)) return ended;
     state.seeded = state.count = next;

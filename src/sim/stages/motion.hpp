@@ -22,6 +22,18 @@ TALUS_INLINE Vec3<typename At::Real> slowed_velocity(const At& at, const typenam
                           Real(at.step().time_step));
 }
 
+/// Solid fraction and pore pressure after the step, from the thickness of the flow and the speed before it.
+template <class At>
+TALUS_INLINE Soil<typename At::Real> evolved_soil(const At& at, const typename At::Real& in_column) {
+    using Real = typename At::Real;
+    const Vec3<Real> velocity = at.velocity(), p = at.position();
+    const terrain::GroundSample<Real> below = at.ground().terrain.sample(p.x, p.y);
+    const Real thickness = flow_thickness(at.model(), below, in_column);
+    const Real speed = length(velocity - below.normal * dot(velocity, below.normal));
+    return evolve(at.model().evolving_pressure, at.soil(), Real(at.model().gravity) * below.normal.z, thickness, speed,
+                  Real(at.step().time_step));
+}
+
 /// Resistance, where it varies between particles.
 template <class At>
 TALUS_INLINE void resist(const At& at) {

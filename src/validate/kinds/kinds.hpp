@@ -24,6 +24,7 @@ namespace talus::validate {
 [[nodiscard]] Kind debris_flume_kind();
 [[nodiscard]] Kind energy_line_kind();
 [[nodiscard]] Kind profile_kind();
+[[nodiscard]] Kind pore_pressure_kind();
 [[nodiscard]] Kind rough_ground_kind();
 [[nodiscard]] Kind scene_kind();
 
