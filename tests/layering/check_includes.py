@@ -20,6 +20,7 @@ BELOW = {
     "geo": ["core", "params", "terrain"],
     "observe": ["core", "params", "terrain", "simd", "sim", "depth", "geo"],
     "scene": ["core", "params", "terrain", "simd", "sim", "geo"],
+    "pack": ["core", "params", "terrain", "simd", "sim", "geo", "scene"],
     "run": ["core", "params", "terrain", "simd", "sim", "depth", "geo", "observe", "scene"],
     "report": ["core", "params", "terrain", "simd", "sim", "depth", "geo", "observe", "scene", "run"],
     "products": ["core", "params", "terrain", "simd", "sim", "depth", "geo", "observe", "scene", "run", "report"],
@@ -31,9 +32,9 @@ BELOW = {
     "twin": ["core", "params", "terrain", "simd", "sim", "depth", "geo", "observe", "scene", "run", "report", "products"],
     "session": ["core", "params", "terrain", "simd", "sim", "depth", "geo", "observe", "scene", "run", "report", "products", "twin"],
     "serve": ["core", "params", "terrain", "simd", "sim", "depth", "geo", "observe", "scene", "run", "report", "products", "stats", "ensemble",
-              "calibrate", "validate", "twin", "session"],
+              "calibrate", "validate", "twin", "session", "pack"],
     "apps": ["core", "params", "terrain", "simd", "sim", "depth", "geo", "observe", "scene", "run", "report", "products", "stats", "ensemble",
-             "calibrate", "validate", "bench", "twin", "session", "serve"],
+             "calibrate", "validate", "bench", "twin", "session", "serve", "pack"],
 }
 INCLUDE = re.compile(r'^\s*#\s*include\s*([<"])([^>"]+)[>"]')
 NAMESPACE = re.compile(r"^namespace (talus\b[\w:]*) \{")
