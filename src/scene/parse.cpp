@@ -266,12 +266,6 @@ class SceneReader {
 
 }  // namespace
 
-std::string ParsedScene::at(const std::string& key_path) const {
-    auto found = places.find(key_path);
-    if (found == places.end()) found = places.find(key_path.substr(0, key_path.rfind('.')));
-    return (found == places.end() ? file.string() : found->second) + ": " + key_path;
-}
-
 Result<ParsedScene> parse_scene_with_places(const std::filesystem::path& file,
                                             const std::vector<std::string>& overrides) {
     TALUS_ASSIGN(const toml::table root, read_toml_file(file, "scene"));

@@ -123,18 +123,4 @@ std::optional<params::ParameterValue> to_parameter_value(const toml::node& node,
     return std::nullopt;
 }
 
-std::string one_line(std::string_view text, std::size_t longest) {
-    std::string out;
-    for (const char c : text) {
-        const bool space = static_cast<unsigned char>(c) <= ' ' || c == '\x7f';
-        if (!space || (!out.empty() && out.back() != ' ')) out += space ? ' ' : c;
-    }
-    if (out.size() > longest) {
-        std::size_t end = longest;
-        while (end > 0 && (static_cast<unsigned char>(out[end]) & 0xC0) == 0x80) --end;  // not inside a UTF-8 character
-        out = out.substr(0, end) + "...";
-    }
-    return out;
-}
-
 }  // namespace talus::scene

@@ -13,7 +13,6 @@
 namespace talus::serve {
 namespace {
 
-constexpr double min_cells = 100, most_cells = 16e6, usual_cells = 1e6;
 constexpr int photo_pixels = 4096;  // along the longer edge: what graphics cards take
 
 void add_terrain(Router& router, Session& session) {
@@ -23,13 +22,15 @@ void add_terrain(Router& router, Session& session) {
                 "/api/terrain",
                 Role::viewer,
                 [&session, encoded](const Request& request, const Respond& respond) {
-                    const auto wanted = number_of(request, "max_cells", min_cells, most_cells);
+                    const auto wanted =
+                        number_of(request, "max_cells", session::fewest_terrain_cells, session::most_terrain_cells);
                     if (!wanted) {
                         respond(error_response(400, wanted.error().message));
                         return;
                     }
                     const Grid<float>& whole = session.scene()->terrain.elevation();
-                    const int factor = session::thinning(whole.geometry, wanted->value_or(usual_cells));
+                    const int factor =
+                        session::thinning(whole.geometry, wanted->value_or(session::usual_terrain_cells));
                     session.worker().post([respond, encoded, factor, scene = session.scene()] {
                         Bytes& bytes = (*encoded)[factor];
                         if (!bytes) {

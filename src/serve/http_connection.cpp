@@ -18,7 +18,7 @@
 #include <fmt/ranges.h>
 
 #include "serve/connection.hpp"
-#include "serve/url.hpp"
+#include "session/url.hpp"
 
 namespace talus::serve {
 namespace {
@@ -170,7 +170,7 @@ std::optional<Response> HttpConnection::refusal() {
     if (message.count(http::field::origin) > 1 || (!origin.empty() && !context_.access.origin_allowed(origin, host))) {
         return error_response(403, "the request comes from a page of another origin");
     }
-    auto target = parse_target({message.target().data(), message.target().size()});
+    auto target = session::parse_target({message.target().data(), message.target().size()});
     if (!target) return error_response(400, target.error().message);
     request_.path = std::move(target->path);
     request_.query = std::move(target->query);

@@ -1,7 +1,5 @@
 #include "serve/message.hpp"
 
-#include <array>
-
 namespace talus::serve {
 
 Response json_response(int status, const nlohmann::json& content) {
@@ -16,9 +14,8 @@ Response error_response(int status, const std::string& sentence) {
 }
 
 Response to_response(const session::Reply& reply) {
-    constexpr std::array statuses{200, 400, 404, 409};  // as Outcome has them
     Response response;
-    response.status = statuses[static_cast<std::size_t>(reply.outcome)];
+    response.status = session::status_of(reply.outcome);
     if (reply.binary) response.type = "application/octet-stream";
     response.body = reply.body;
     return response;

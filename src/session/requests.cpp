@@ -1,5 +1,6 @@
 #include "session/requests.hpp"
 
+#include <array>
 #include <charconv>
 #include <utility>
 
@@ -77,6 +78,11 @@ json or_null(const std::string& id) {
 }
 
 }  // namespace
+
+int status_of(Outcome outcome) {
+    constexpr std::array statuses{200, 400, 404, 409};  // as Outcome has them
+    return statuses[static_cast<std::size_t>(outcome)];
+}
 
 Reply reply(const json& content) {
     return {Outcome::done, std::make_shared<const std::string>(to_text(content))};

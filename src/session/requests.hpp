@@ -16,6 +16,8 @@ namespace talus::session {
 
 /// How a request ends. Otherwise than done, the answer is `{"error": sentence}`.
 enum class Outcome { done, wrong, unknown, not_now };
+/// The status that HTTP has for it.
+[[nodiscard]] int status_of(Outcome outcome);
 
 struct Reply {
     Outcome outcome = Outcome::done;

@@ -12,6 +12,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "core/hash.hpp"
 #include "core/result.hpp"
 #include "session/requests.hpp"
 #include "session/room.hpp"
@@ -49,6 +50,10 @@ class Session final : private Watcher {
     /// `question`: the name of one of questions().
     [[nodiscard]] Reply ask(const std::string& scenario, const std::string& question, const Arguments& arguments = {});
     [[nodiscard]] Reply scene() const { return reply(scenarios_->at(0).scene_json()); }
+    /// Of the first scenario's state now, as in its journal.
+    [[nodiscard]] std::string hash() const { return to_hex(scenarios_->at(0).hash()); }
+    /// As `GET /api/session`.
+    [[nodiscard]] nlohmann::json describe(Role role) const { return room_->describe(role); }
 
     /// Does what is due, for about as long as `budget`, by the clock `now`. Returns when to call it again; empty: not
     /// before another call.

@@ -7,6 +7,9 @@ namespace talus::session {
 /// The grid with every so many columns and rows, so that at most `max_cells` remain: the middle one of as many.
 [[nodiscard]] Grid<float> thinned(const Grid<float>& whole, double max_cells);
 
+/// Cells of a terrain that a page may ask for.
+inline constexpr double fewest_terrain_cells = 100, most_terrain_cells = 16e6, usual_terrain_cells = 1e6;
+
 /// The whole factor by which columns and rows are thinned so that at most `max_cells` remain.
 [[nodiscard]] int thinning(const GridGeometry& grid, double max_cells);
 

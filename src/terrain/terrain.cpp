@@ -42,7 +42,7 @@ Terrain::Terrain(Grid<float> elevation) : elevation_(std::make_shared<Grid<float
     field_.y_first = static_cast<float>(-0.5 * field_.last_row * g.cell);
     field_.inverse_cell = static_cast<float>(1 / g.cell);
 
-    nodes_ = std::make_shared<Quad[]>(heights.size());
+    nodes_ = std::shared_ptr<Quad[]>(new Quad[heights.size()]());
     field_.nodes = nodes_.get();
     for (int row = 0; row < g.rows; ++row) {
         for (int column = 0; column < g.columns; ++column) nodes_[g.index(column, row)] = make_node(column, row);
@@ -125,7 +125,7 @@ void Terrain::set_elevation(std::size_t cell, float elevation) {
     if (elevation_.use_count() > 1 || nodes_.use_count() > 1) {
         const std::size_t cells = elevation_->values.size();
         elevation_ = std::make_shared<Grid<float>>(*elevation_);
-        const auto nodes = std::make_shared<Quad[]>(cells);
+        const std::shared_ptr<Quad[]> nodes(new Quad[cells]());
         std::copy_n(nodes_.get(), cells, nodes.get());
         nodes_ = nodes;
         field_.nodes = nodes_.get();

@@ -18,8 +18,8 @@
 #include "scene/scene.hpp"
 #include "serve/client.hpp"
 #include "serve/server.hpp"
-#include "serve/url.hpp"
 #include "session/json_text.hpp"
+#include "session/url.hpp"
 #include "support/fixtures.hpp"
 #include "twin/journal.hpp"
 #include "twin/setup_file.hpp"
@@ -101,7 +101,7 @@ bool json_text(const std::string& bytes) {
 }
 
 bool url(const std::string& bytes) {
-    return read_or_refused(serve::parse_target(bytes));
+    return read_or_refused(session::parse_target(bytes));
 }
 
 bool journal(const std::string& bytes) {

@@ -1,7 +1,6 @@
 #include <algorithm>
 #include <cstdlib>
 #include <fstream>
-#include <span>
 #include <stdexcept>
 #include <string>
 #include <tuple>
@@ -12,6 +11,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/hash.hpp"
+#include "golden/hash_of.hpp"
 #include "run/run_scene.hpp"
 #include "scene/scene.hpp"
 #include "simd/dispatch.hpp"
@@ -37,43 +37,6 @@ const char* const what_to_do =
     "Results must not change without a reason. If this change is meant, GOLDEN_REMAKE=1 build/release/bin/test_golden "
     "writes the table again; say in the commit which results changed and why. If nothing was changed, run the test on "
     "the commit before: another compiler or C library may round otherwise (docs/testing.md)";
-
-class Hash {
-  public:
-    void add(double value) { hash_.add(&value, sizeof value); }
-    void add(const Grid<float>& map) {
-        const GridGeometry& g = map.geometry;
-        for (const double value : {g.x_min, g.y_min, g.cell}) add(value);
-        hash_.add(std::span<const float>(map.values));
-    }
-    [[nodiscard]] std::string text() const { return to_hex(hash_.value()); }
-
-  private:
-    StateHash hash_;
-};
-
-/// Of what the observers measured: maps, structures, volumes. Motion has a hash of its own.
-std::string hash_of(const observe::Observation& o) {
-    Hash hash;
-    for (const Grid<float>* map : {&o.maps.peak_depth, &o.maps.peak_speed, &o.maps.peak_pressure, &o.maps.arrival_time,
-                                   &o.maps.deposit_depth, &o.erosion.depth}) {
-        hash.add(*map);
-    }
-    for (const observe::BuildingImpact& b : o.buildings) {
-        for (const double value :
-             {b.first_hit_time, b.peak_force, b.peak_impact_pressure, b.peak_depth, b.peak_dynamic_pressure, b.impulse,
-              b.failure_time, b.overtopped_volume, b.passed_volume, b.retained_volume, b.peak_filling_height}) {
-            hash.add(value);
-        }
-    }
-    for (const observe::TimeSample& t : o.timeseries) {
-        for (const double value : {t.time, t.volume_released, t.volume_entrained, t.front_chainage, t.volume_moving,
-                                   t.volume_left, t.kinetic_energy, t.largest_speed}) {
-            hash.add(value);
-        }
-    }
-    return hash.text();
-}
 
 struct Hashes {
     std::string motion, measurements;
@@ -137,7 +100,7 @@ TEST_P(Golden, has_the_known_result_on_any_number_of_threads) {
         if (!on_host) {
             ASSERT_EQ(result.instruction_set, instruction_set);
         }
-        expect_in_table(name, {to_hex(result.hash), hash_of(result.observation)},
+        expect_in_table(name, {to_hex(result.hash), test::hash_of(result.observation)},
                         fmt::format("{} on {} threads", instruction_set, threads));
     }
 }

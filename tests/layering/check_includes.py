@@ -20,6 +20,7 @@ BELOW = {
     "geo": ["core", "params", "terrain"],
     "observe": ["core", "params", "terrain", "simd", "sim", "depth", "geo"],
     "scene": ["core", "params", "terrain", "simd", "sim", "geo"],
+    "pack": ["core", "params", "terrain", "simd", "sim", "geo", "scene"],
     "run": ["core", "params", "terrain", "simd", "sim", "depth", "geo", "observe", "scene"],
     "report": ["core", "params", "terrain", "simd", "sim", "depth", "geo", "observe", "scene", "run"],
     "products": ["core", "params", "terrain", "simd", "sim", "depth", "geo", "observe", "scene", "run", "report"],
@@ -33,9 +34,9 @@ BELOW = {
     "session": ["core", "params", "terrain", "simd", "sim", "depth", "geo", "observe", "scene", "run", "report", "products", "twin"],
     "publish": ["core"],
     "serve": ["core", "params", "terrain", "simd", "sim", "depth", "geo", "observe", "scene", "run", "report", "products", "stats", "ensemble",
-              "calibrate", "risk", "validate", "twin", "session", "publish"],
+              "calibrate", "risk", "validate", "twin", "session", "publish", "pack"],
     "apps": ["core", "params", "terrain", "simd", "sim", "depth", "geo", "observe", "scene", "run", "report", "products", "stats", "ensemble",
-             "calibrate", "risk", "validate", "bench", "twin", "session", "publish", "serve"],
+             "calibrate", "risk", "validate", "bench", "twin", "session", "publish", "serve", "pack"],
 }
 INCLUDE = re.compile(r'^\s*#\s*include\s*([<"])([^>"]+)[>"]')
 NAMESPACE = re.compile(r"^namespace (talus\b[\w:]*) \{")

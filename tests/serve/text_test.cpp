@@ -1,21 +1,9 @@
 #include <gtest/gtest.h>
 
 #include "serve/router.hpp"
-#include "serve/url.hpp"
 
 namespace talus::serve {
 namespace {
-
-TEST(Target, is_taken_apart_and_decoded) {
-    const auto target = parse_target("/api/a%20b?x_m=1.5&name=A+d%C3%A4&flag&=no");
-    ASSERT_TRUE(target);
-    EXPECT_EQ(target->path, "/api/a b");
-    EXPECT_EQ(target->query, (Arguments{{"x_m", "1.5"}, {"name", "A d\xc3\xa4"}, {"flag", ""}}));
-    for (const char* bad :
-         {"", "api", "*", "http://x/", "/%", "/%4", "/%zz", "/%00", "/a%0d%0ab", "/?a=%1", "/?x_m=1&x_m=2"}) {
-        EXPECT_FALSE(parse_target(bad)) << bad;
-    }
-}
 
 TEST(Router, finds_routes_by_method_and_pattern) {
     Router router;

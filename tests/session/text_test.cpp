@@ -5,9 +5,21 @@
 #include "geo/json_text.hpp"
 #include "session/json_text.hpp"
 #include "session/pace.hpp"
+#include "session/url.hpp"
 
 namespace talus::session {
 namespace {
+
+TEST(Target, is_taken_apart_and_decoded) {
+    const auto target = parse_target("/api/a%20b?x_m=1.5&name=A+d%C3%A4&flag&=no");
+    ASSERT_TRUE(target);
+    EXPECT_EQ(target->path, "/api/a b");
+    EXPECT_EQ(target->query, (Arguments{{"x_m", "1.5"}, {"name", "A d\xc3\xa4"}, {"flag", ""}}));
+    for (const char* bad :
+         {"", "api", "*", "http://x/", "/%", "/%4", "/%zz", "/%00", "/a%0d%0ab", "/?a=%1", "/?x_m=1&x_m=2"}) {
+        EXPECT_FALSE(parse_target(bad)) << bad;
+    }
+}
 
 TEST(JsonText, reads_what_is_valid_and_not_too_deep) {
     EXPECT_EQ((*parse_json(R"({"a": [1, "]]]]"]})"))["a"][0], 1);

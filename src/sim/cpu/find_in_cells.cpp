@@ -161,7 +161,8 @@ void find_in_cells(const VectorArray& sorted, const std::uint8_t* asleep, const 
             if (asleep[i]) continue;
             float& own_x = x[candidates.own + (i - begin)];
             const float mine = std::exchange(own_x, far_away);  // not its own neighbour
-            const auto px = hn::Set(d, mine), py = hn::Set(d, sorted.y[i]), pz = hn::Set(d, sorted.z[i]);
+            // Not Set(d, mine): Clang 14 loads that for WebAssembly from own_x, after it was replaced.
+            const auto px = hn::Set(d, sorted.x[i]), py = hn::Set(d, sorted.y[i]), pz = hn::Set(d, sorted.z[i]);
             const std::size_t before = size;
             for (std::size_t c = 0; c < candidates.count; c += lanes) {
                 const auto dx = hn::Sub(hn::LoadU(d, x + c), px);

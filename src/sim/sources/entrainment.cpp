@@ -191,7 +191,8 @@ std::span<const Entrainment::Neighbour> Entrainment::neighbours_of(std::size_t s
     const auto s = static_cast<std::uint32_t>(site);
     const auto first = std::lower_bound(neighbours_.begin(), neighbours_.end(), Neighbour{s, 0});
     const auto last = std::lower_bound(first, neighbours_.end(), Neighbour{s + 1, 0});
-    return {first, last};
+    const std::span<const Neighbour> all(neighbours_);
+    return all.subspan(static_cast<std::size_t>(first - neighbours_.begin()), static_cast<std::size_t>(last - first));
 }
 
 void Entrainment::make_room(const Model& model, const Ground& ground, State& state, std::size_t index) const {

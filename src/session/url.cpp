@@ -1,8 +1,8 @@
-#include "serve/url.hpp"
+#include "session/url.hpp"
 
 #include <optional>
 
-namespace talus::serve {
+namespace talus::session {
 namespace {
 
 int hex_digit(char c) {
@@ -60,4 +60,4 @@ Result<Target> parse_target(std::string_view text) {
     return target;
 }
 
-}  // namespace talus::serve
+}  // namespace talus::session

@@ -1,11 +1,12 @@
 #pragma once
 
+#include <string>
 #include <string_view>
 
 #include "core/result.hpp"
-#include "serve/message.hpp"
+#include "session/role.hpp"
 
-namespace talus::serve {
+namespace talus::session {
 
 struct Target {
     std::string path;  ///< decoded
@@ -15,4 +16,4 @@ struct Target {
 /// Parses the target of a request. Errors: not a path, a bad percent sequence, control characters.
 [[nodiscard]] Result<Target> parse_target(std::string_view text);
 
-}  // namespace talus::serve
+}  // namespace talus::session

@@ -1,0 +1,148 @@
+#include "session/page_api.hpp"
+
+#include <algorithm>
+#include <utility>
+#include <vector>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "session/json_text.hpp"
+#include "session/thinned.hpp"
+#include "session/url.hpp"
+#include "twin/json_keys.hpp"
+
+namespace talus::session {
+namespace {
+
+using nlohmann::json;
+
+PageAnswer to_answer(const Reply& reply) {
+    return {status_of(reply.outcome), reply.binary ? "application/octet-stream" : "application/json", reply.body};
+}
+
+PageAnswer refused(Outcome outcome, const std::string& sentence) {
+    return to_answer(refusal(outcome, sentence));
+}
+
+PageAnswer not_here(const std::string& method, std::string_view path) {
+    return refused(Outcome::unknown, fmt::format("{} {} is not part of this page: it needs the program on a machine",
+                                                 tidy_name(method, 10), tidy_name(path, 80)));
+}
+
+/// The parts of a path between its slashes.
+std::vector<std::string> parts_of(std::string_view path) {
+    std::vector<std::string> parts;
+    while (!path.empty()) {
+        path.remove_prefix(1);  // the slash
+        const std::size_t end = std::min(path.find('/'), path.size());
+        parts.emplace_back(path.substr(0, end));
+        path.remove_prefix(end);
+    }
+    return parts;
+}
+
+/// The question of a path behind the scenario's name, with the arguments in its name.
+const Question* question_of(const std::vector<std::string>& parts, Arguments& arguments) {
+    for (const Question& question : questions()) {
+        const std::vector<std::string> wanted = parts_of("/" + question.name);
+        if (wanted.size() + 3 != parts.size() || wanted[0] != parts[3]) continue;
+        for (std::size_t i = 1; i < wanted.size(); ++i) {
+            arguments[wanted[i].substr(1, wanted[i].size() - 2)] = parts[i + 3];
+        }
+        return &question;
+    }
+    return nullptr;
+}
+
+std::optional<PageAnswer> unknown_key(const Arguments& query, const std::vector<std::string>& known) {
+    for (const auto& [key, value] : query) {
+        if (std::find(known.begin(), known.end(), key) != known.end()) continue;
+        return refused(Outcome::wrong,
+                       fmt::format("the query has no {}; it may have: {}", tidy_name(key, 30),
+                                   known.empty() ? "nothing" : fmt::format("{}", fmt::join(known, ", "))));
+    }
+    return {};
+}
+
+std::string text_of(const json& body, const char* key) {
+    const auto found = body.is_object() ? body.find(key) : body.end();
+    return found != body.end() && found->is_string() ? found->get<std::string>() : "";
+}
+
+}  // namespace
+
+PageAnswer PageApi::answer(const std::string& method, std::string_view target, std::string_view body,
+                           const std::string& person, const Now& now) {
+    const auto asked = parse_target(target);
+    if (!asked) return refused(Outcome::wrong, asked.error().message);
+    if (method == "GET") return get(asked->path, asked->query, now);
+    const auto wanted = body.empty() ? Result<json>(json()) : parse_json(body);
+    if (!wanted) return refused(Outcome::wrong, wanted.error().message);
+    return change(method, asked->path, *wanted, person, now);
+}
+
+PageAnswer PageApi::get(std::string_view path, const Arguments& query, const Now&) {
+    if (path == "/api/session") {
+        return to_answer(reply(session_.describe(Role::controller)));
+    }
+    if (path == "/api/scene") return to_answer(session_.scene());
+    if (path == "/api/terrain") return terrain(query);
+    if (path == "/api/orthophoto") {
+        if (!orthophoto_) return refused(Outcome::unknown, "the scene has no orthophoto (terrain.orthophoto)");
+        return {200, orthophoto_->type, orthophoto_->bytes};
+    }
+    const std::vector<std::string> parts = parts_of(path);
+    if (parts.size() < 4 || parts[0] != "api" || parts[1] != "scenarios") return not_here("GET", path);
+    Arguments arguments = query;
+    const Question* question = question_of(parts, arguments);
+    if (question == nullptr) return not_here("GET", path);
+    if (auto wrong = unknown_key(query, question->keys)) return *wrong;
+    return to_answer(session_.ask(parts[2], question->name, arguments));
+}
+
+PageAnswer PageApi::terrain(const Arguments& query) {
+    if (auto wrong = unknown_key(query, {"max_cells"})) return *wrong;
+    const auto wanted = number_of(query, "max_cells", fewest_terrain_cells, most_terrain_cells);
+    if (!wanted) return refused(Outcome::wrong, wanted.error().message);
+    const Grid<float>& whole = scene_.terrain.elevation();
+    const int factor = thinning(whole.geometry, wanted->value_or(usual_terrain_cells));
+    Bytes& bytes = terrain_[factor];
+    if (!bytes) bytes = std::make_shared<const std::string>(twin::encode_grid(thinned_by(whole, factor)));
+    return {200, "application/octet-stream", bytes};
+}
+
+PageAnswer PageApi::change(const std::string& method, std::string_view path, const json& body,
+                           const std::string& person, const Now& now) {
+    const std::vector<std::string> parts = parts_of(path);
+    const bool of_scenarios = parts.size() >= 2 && parts[0] == "api" && parts[1] == "scenarios";
+    std::optional<Reply> answer;
+    const Answered answered = [&](const Reply& reply) { answer = reply; };
+    if (method == "POST" && path == "/api/control") return control(body, person, now);
+    if (method == "POST" && of_scenarios && parts.size() == 2) {
+        session_.copy(person, body, answered);
+    } else if (method == "DELETE" && of_scenarios && parts.size() == 3) {
+        answered(session_.end(person, parts[2]));
+    } else if (method == "POST" && of_scenarios && parts.size() == 4 && parts[3] == "actions") {
+        session_.act(person, parts[2], body, answered);
+    } else {
+        return not_here(method, path);
+    }
+    // It is prepared between two steps.
+    while (!answer) static_cast<void>(session_.advance(now, Clock::duration::zero()));
+    return to_answer(*answer);
+}
+
+PageAnswer PageApi::control(const json& body, const std::string& person, const Now& now) {
+    const std::string what = text_of(body, "do");
+    if (what != "request" && what != "release" && what != "grant" && what != "decline") {
+        return refused(Outcome::wrong,
+                       fmt::format("do = \"{}\"; it is request, release, grant or decline", tidy_name(what, 30)));
+    }
+    if (const Status changed = session_.control(what, person, now()); !changed) {
+        return refused(Outcome::not_now, changed.error().message);
+    }
+    return to_answer(reply({{"done", what}, {"created", nullptr}}));
+}
+
+}  // namespace talus::session
