@@ -28,14 +28,14 @@ TALUS_PACKED(Crs, wkt, name, epsg, local)
 
 namespace talus::params {
 
-TALUS_PACKED(SceneInfo, title, description, reconstruction, assumptions, sources)
+TALUS_PACKED(SceneInfo, title, description, reconstruction, assumptions, sources, option)
 TALUS_PACKED(ReportSpec, client, author, checker, revision, reference, date, limits_of_use)
 TALUS_PACKED(TerrainSpec, file, crs, band, extent, obtain, deposit, erosion, orthophoto)
 TALUS_PACKED(ReleaseSpec, name, file, layer, thickness, thickness_attribute, thickness_raster, thickness_direction,
-             volume, start_time, shift_along, shift_across, pore_pressure_ratio)
+             volume, start_time, shift_along, shift_across, pore_pressure_ratio, solid_fraction)
 TALUS_PACKED(BedSpec, name, file, layer, depth, depth_attribute, depth_raster, law, growth_rate, critical_shear_stress,
              erosion_rate, erosion_depth_per_shear)
-TALUS_PACKED(InflowSpec, name, line, file, layer, polygon, polygon_file, direction, hydrograph)
+TALUS_PACKED(InflowSpec, name, line, file, layer, polygon, polygon_file, direction, hydrograph, solid_fraction)
 TALUS_PACKED(InflowSample, time, discharge, velocity, density, pore_pressure_ratio)
 TALUS_PACKED(BuildingSpec, height)
 TALUS_PACKED(BarrierOpeningSpec, position, width, sill, barrier)
@@ -45,8 +45,10 @@ TALUS_PACKED(FlowPathSpec, file, layer, corridor_width)
 TALUS_PACKED(MaterialSpec, rest_density, friction_coefficient, building_friction_coefficient,
              internal_friction_coefficient, viscosity, kinematic_viscosity, viscosity_on_ground, turbulent_friction,
              turbulent_friction_thickness, laminar_viscosity, laminar_dynamic_viscosity, cohesion, pore_pressure_ratio,
-             pore_pressure_decay_time, inertial_friction_coefficient, inertial_number, grain_diameter, grain_density,
-             samosat, samosat_fluidization, samosat_karman, samosat_roughness, samosat_offset)
+             pore_pressure_decay_time, pore_pressure, permeability, solid_fraction, critical_solid_fraction,
+             pore_fluid_viscosity, pore_fluid_density, compressibility, inertial_friction_coefficient, inertial_number,
+             grain_diameter, grain_density, samosat, samosat_fluidization, samosat_karman, samosat_roughness,
+             samosat_offset)
 TALUS_PACKED(ZoneSpec, name, file, layer, polygon, raster, raster_holds, raster_value, friction_coefficient,
              turbulent_friction, cohesion, laminar_viscosity, stem_density, stem_diameter, stem_drag_coefficient)
 TALUS_PACKED(SolverSpec, particle_spacing, target_layers, target_particle_count, particle_limit, time_step,
@@ -76,6 +78,13 @@ TALUS_PACKED(TriggerSpec, name, release, inflow, volume_limit, pore_pressure_rat
 TALUS_PACKED(AlarmSpec, name, structure, chainage, x, y, distance, lead_time, impact_pressure, dynamic_pressure, depth,
              message)
 
+TALUS_PACKED(OptionSpec, name, barriers, zones, removed_buildings, cost, life, interest_rate, upkeep, notes, source)
+TALUS_PACKED(RiskSpec, currency, curves, map_death_curve, criteria)
+TALUS_PACKED(RiskScenarioSpec, name, annual_frequency, return_period, set, source)
+TALUS_PACKED(ExposureSpec, name, kind, death_curve, damage_curve, source, buildings, value, persons, presence,
+             value_attribute, persons_attribute, presence_attribute, line, file, layer, vehicles_per_day, speed,
+             persons_per_vehicle, trips_per_day)
+
 /// With a base, so that the compiler cannot count its members: tests/pack does.
 template <class Value, class Visit>
 requires std::same_as<std::remove_const_t<Value>, BuildingsSpec>
@@ -87,7 +96,7 @@ void visit_members(Value& v, const Visit& visit) {
 TALUS_PACKED(SceneSpec, scene, report, terrain, releases, beds, inflows, hydrograph, buildings, barriers,
              barrier_openings, flow_path, material, zones, solver, outputs, gauges, cross_sections, zoom, observations,
              superelevations, arrivals, run_ups, deposit_depths, damages, observed_run_outs, deposit_outlines,
-             affected_areas, elevation_changes, variants, triggers, alarms)
+             affected_areas, elevation_changes, variants, triggers, alarms, options, risk, risk_scenarios, exposures)
 
 }  // namespace talus::params
 
@@ -125,6 +134,12 @@ namespace talus::pack {
 
 template <>
 inline constexpr std::uint64_t count_of<params::CrsChoice> = 2;
+template <>
+inline constexpr std::uint64_t count_of<params::PorePressure> = 2;
+template <>
+inline constexpr std::uint64_t count_of<params::CriteriaChoice> = 2;
+template <>
+inline constexpr std::uint64_t count_of<params::ExposureKind> = 2;
 template <>
 inline constexpr std::uint64_t count_of<params::EntrainmentLaw> = 2;
 template <>

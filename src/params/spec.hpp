@@ -157,10 +157,10 @@ struct FlowPathSpec {
     double corridor_width = 60;  ///< m, debris farther than half of it from the line does not count as front
 };
 
-/// `[material]`
 /// Where pore pressure comes from: numbers of the scene, or the state of the soil (docs/pore-pressure.md).
 enum class PorePressure { prescribed, dilatancy };
 
+/// `[material]`
 struct MaterialSpec {
     double rest_density = 2000;                           ///< kg/m3
     double friction_coefficient = 0.4;                    ///< on ground, and on buildings and inside unless set
