@@ -340,7 +340,10 @@ TEST_F(ParseScene, every_commented_default_of_a_written_scene_is_valid) {
                                                  "deposit_outline",
                                                  "affected_area",
                                                  "elevation_change",
-                                                 "variant"};
+                                                 "variant",
+                                                 "option",
+                                                 "risk_scenario",
+                                                 "exposure"};
     std::string text, current, section;
     while (std::getline(lines, current)) {
         const bool commented_header = current.starts_with("# [") && current.ends_with(']');  // no line of prose
