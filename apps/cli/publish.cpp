@@ -215,13 +215,14 @@ int publish_command(PublishArguments arguments) {
 
 Status check_publish(const PublishOptions& options) {
     TALUS_TRY(serve::published_page());
-    if (options.without_engine) return {};
+    if (options.without_engine || serve::carries_engine()) return {};
     return Error{
         "this program was built without the engine for browsers; publish the recorded run alone with --without-engine"};
 }
 
 Result<Twin> make_twin(serve::ToPublish wanted, const PublishOptions& options, const serve::SayShare& say) {
     wanted.recording = options.recording;
+    wanted.engine = !options.without_engine;
     TALUS_ASSIGN(const serve::Published made, serve::publish(std::move(wanted), say));
     Twin twin;
     if (options.folder)
@@ -232,7 +233,9 @@ Result<Twin> make_twin(serve::ToPublish wanted, const PublishOptions& options, c
     twin.contents = made.content.title + "\n";
     for (const std::string& line : made.contents) twin.contents += "  " + line + "\n";
     twin.contents +=
-        fmt::format("  engine: none, a recording alone\n  size: {:.1f} MB\n", static_cast<double>(twin.bytes) / 1e6);
+        fmt::format("  engine: {}\n  size: {:.1f} MB\n",
+                    made.content.engine ? "with it: a reader can change the run" : "none, a recording alone",
+                    static_cast<double>(twin.bytes) / 1e6);
     twin.hash = made.hash;
     return twin;
 }

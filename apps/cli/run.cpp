@@ -208,7 +208,7 @@ void add_twin(const Job& job, Extras& extras, ProgressReporter& progress, Interr
     const auto twin = make_twin({.scene = std::make_shared<const scene::Scene>(job.input.scene),
                                  .overrides = job.input.source.overrides,
                                  .folder = folder.path()},
-                                {.without_engine = true}, say);
+                                {.without_engine = !serve::carries_engine()}, say);
     const Status written = twin ? products::write_text_file(job.output.path() / "twin.html", twin->files.front().bytes)
                                 : Status(twin.error());
     if (!written) extras.failures().push_back("twin.html: " + written.error().message);

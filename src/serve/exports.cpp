@@ -31,6 +31,9 @@ struct ExportFile {
 
 constexpr const char* scene_zip = "scene.zip";
 
+constexpr const char* twin_what =
+    "Twin in one file: all runs of this session in a page that opens in any browser, without program or network";
+
 // The files of a run; requested names are checked against these, so none leads out of the folder.
 constexpr ExportFile export_files[] = {
     {"report.html", "text/html", "Report with maps, plots and tables, for the browser and for paper"},
@@ -168,8 +171,9 @@ void Exports::list(const std::string& scenario, const Respond& respond) {
         }
         const bool current = is_current(*index, all.at(*index));
         writer_->post([taken = current ? taken_[static_cast<std::size_t>(*index)] : nullptr,
-                       present = files_of(all.at(*index), source_), respond] {
+                       present = files_of(all.at(*index), source_), twin = twin_ != nullptr, respond] {
             json files = json::array();
+            if (twin) files.push_back({{"name", twin_html}, {"bytes", nullptr}, {"what", twin_what}});
             const bool written = taken && !taken->products;
             for (const ExportFile* file : present) {
                 std::error_code error;
@@ -184,6 +188,7 @@ void Exports::list(const std::string& scenario, const Respond& respond) {
 }
 
 void Exports::file(const std::string& scenario, const std::string& name, const Respond& respond) {
+    if (name == twin_html && twin_) return twin_(respond);
     const ExportFile* wanted = find_file(name);
     if (wanted == nullptr) {
         respond(error_response(404, fmt::format("there is no export {}", tidy_name(name, 40))));

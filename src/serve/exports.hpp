@@ -3,8 +3,10 @@
 #include <array>
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <string>
+#include <utility>
 
 #include "run/variants.hpp"
 #include "serve/sent_files.hpp"
@@ -12,6 +14,9 @@
 #include "serve/worker.hpp"
 
 namespace talus::serve {
+
+/// The name of the session in one page among them.
+inline constexpr const char* twin_html = "twin.html";
 
 /// The result files of the runs so far, written on request and kept until the run has continued. Meanwhile
 /// steps continue: a separate thread writes the run as it was at the request.
@@ -25,6 +30,9 @@ class Exports {
     void close();
     Exports(const Exports&) = delete;
     Exports& operator=(const Exports&) = delete;
+
+    /// Who answers with the open session as one page (twin_page.hpp); without it there is none. Once, before requests.
+    void offer_twin(std::function<void(const Respond&)> twin) { twin_ = std::move(twin); }
 
     /// Answers `{"files": [...]}` for a scenario.
     void list(const std::string& scenario, const Respond& respond);
@@ -42,7 +50,8 @@ class Exports {
     std::filesystem::path folder_;
     run::SceneSource source_;
     std::array<SnapshotPtr, Scenarios::max_count> taken_;  // the latest; used by the loop's thread only
-    std::uint64_t count_ = 0;                              // of folders, for their names; likewise
+    std::function<void(const Respond&)> twin_;
+    std::uint64_t count_ = 0;  // of folders, for their names; likewise
     SentFiles sent_;
     std::weak_ptr<const std::string> archive_sent_;  // a scene.zip while it is being sent; used by the writer only
     std::string archived_;                           // the scene file in it

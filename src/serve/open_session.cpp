@@ -5,6 +5,7 @@
 #include "core/try.hpp"
 #include "serve/api.hpp"
 #include "serve/option_scenarios.hpp"
+#include "serve/recorder.hpp"
 #include "serve/server.hpp"
 
 namespace talus::serve {
@@ -30,6 +31,7 @@ Result<OpenSessionPtr> OpenSession::open(const Thread& thread, const std::shared
     made->router =
         make_api(made->session, made->exports, made->ensembles, made->calibrations, made->alerts, made->overlays);
     add_flow_routes(made->router, made->flows);
+    if (published_page()) made->exports.offer_twin([raw = made.get()](const Respond& r) { raw->twin_page.file(r); });
     made->overlays.open(std::move(laid));
     add_depth_averaged_routes(made->router, made->session, made->depth_averaged);
     if (const Status opened = made->alerts.open(); !opened) {
@@ -60,6 +62,7 @@ Result<OpenSessionPtr> OpenSession::open(const Thread& thread, const std::shared
 
 void OpenSession::close() {
     // Threads end while everything that they notify still exists.
+    twin_page.close();
     calibrations.close();
     alerts.close();
     depth_averaged.close();

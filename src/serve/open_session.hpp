@@ -13,6 +13,7 @@
 #include "serve/overlays.hpp"
 #include "serve/router.hpp"
 #include "serve/session.hpp"
+#include "serve/twin_page.hpp"
 
 namespace talus::serve {
 
@@ -54,6 +55,7 @@ struct OpenSession {
     Overlays overlays;
     Router router;
     FlowExports flows;
+    TwinPage twin_page{*this};
 };
 
 using OpenSessionPtr = std::shared_ptr<OpenSession>;

@@ -10,10 +10,16 @@
 #include <fmt/ranges.h>
 
 #include "core/try.hpp"
+#include "publish/engine.hpp"
 #include "serve/library.hpp"
 #include "serve/server.hpp"
 #include "serve/worker.hpp"
 #include "session/json_text.hpp"
+
+// The scene of the engine is packed by src/pack, which a source tree without the engine does not have.
+#if __has_include("pack/pack.hpp")
+#include "pack/pack.hpp"
+#endif
 
 namespace talus::serve {
 namespace {
@@ -74,7 +80,36 @@ std::vector<std::string> contents_of(const scene::Scene& scene, const std::vecto
     return lines;
 }
 
+/// Errors: a scene too large for a page.
+Status add_engine(publish::Content& content, const scene::Scene& scene, const std::vector<std::string>& overrides) {
+#if __has_include("pack/pack.hpp")
+    const pack::Packed packed{.scene = scene, .overrides = overrides};
+    TALUS_TRY(pack::check_size(packed));
+    content.scene = pack::write(packed);
+    content.engine = publish::find_engine();
+#else
+    (void)content, (void)scene, (void)overrides;
+#endif
+    return {};
+}
+
 }  // namespace
+
+bool carries_engine() {
+#if __has_include("pack/pack.hpp")
+    return publish::find_engine().has_value();
+#else
+    return false;
+#endif
+}
+
+Status check_twin_size(std::size_t bytes) {
+    if (bytes <= largest_twin) return {};
+    return Error{
+        fmt::format("the recording has {:.0f} MB; a page takes {:.0f} MB at most: publish it with talus publish "
+                    "and fewer frames (--interval), or without files (--no-files)",
+                    static_cast<double>(bytes) / 1e6, static_cast<double>(largest_twin) / 1e6)};
+}
 
 json describe_twin(const scene::Scene& scene, bool engine) {
     return {{"version", 1},
@@ -92,6 +127,7 @@ Result<Published> publish(ToPublish wanted, const SayShare& say) {
     const std::shared_ptr<const scene::Scene> scene = wanted.scene;
     const bool run = wanted.scenarios.empty();
     const RecordOptions recording = wanted.recording;
+    if (wanted.engine) TALUS_TRY(add_engine(made.content, *scene, wanted.overrides));  // before the run: it may refuse
     Hall hall;
     TALUS_TRY(hall.open(wanted));
     if (run) TALUS_TRY(run_to_end(hall.session(), say));
@@ -99,14 +135,9 @@ Result<Published> publish(ToPublish wanted, const SayShare& say) {
     made.contents = contents_of(*scene, recorded.runs);
     made.hash = recorded.runs.front().hash;
     made.content.title = scene->spec.scene.title;
-    made.content.about = describe_twin(*scene, false);
+    made.content.about = describe_twin(*scene, made.content.engine.has_value());
     made.content.tape = recorded.tape.pack();
-    if (made.content.tape.size() > largest_twin) {
-        return Error{
-            fmt::format("the recording has {:.0f} MB; a page takes {:.0f} MB at most: take fewer frames with "
-                        "--interval, or leave the files out with --no-files",
-                        static_cast<double>(made.content.tape.size()) / 1e6, static_cast<double>(largest_twin) / 1e6)};
-    }
+    TALUS_TRY(check_twin_size(made.content.tape.size()));
     return made;
 }
 

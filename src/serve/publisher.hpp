@@ -24,7 +24,11 @@ struct ToPublish {
     std::vector<Overlay> overlays = {};           ///< of the session
     std::filesystem::path folder = {};            ///< an existing one for temporary files
     RecordOptions recording = {};
+    bool engine = false;  ///< with the engine, so that a reader can change the run
 };
+
+/// Whether this program carries the engine, and can pack a scene for it.
+[[nodiscard]] bool carries_engine();
 
 /// What a published twin holds, for the one who publishes it.
 struct Published {
@@ -37,6 +41,9 @@ struct Published {
 /// Opens the scene without a server, runs it unless it is a session, and records it. Errors: the scene cannot be run, a
 /// fault, stopped, larger than largest_twin, no page in this program.
 [[nodiscard]] Result<Published> publish(ToPublish wanted, const SayShare& say);
+
+/// Error: a recording of so many bytes is larger than that.
+[[nodiscard]] Status check_twin_size(std::size_t bytes);
 
 /// What the page says of its file.
 [[nodiscard]] nlohmann::json describe_twin(const scene::Scene& scene, bool engine);

@@ -212,11 +212,14 @@ Status record_scenario(Asker& asker, publish::Tape& tape, RecordedRun& run, cons
     }
     if (!options.files) return {};
     TALUS_TRY(said(0.8));
-    TALUS_ASSIGN(const json exports, asker.get_json(of + "exports"));
-    TALUS_TRY(keep(asker, tape, of + "exports"));
-    for (const json& file : exports.at("files")) {
+    TALUS_ASSIGN(json exports, asker.get_json(of + "exports"));
+    json files = json::array();
+    for (json& file : exports.at("files")) {
+        if (file.at("name") == twin_html) continue;  // that is this page
         TALUS_TRY(keep(asker, tape, of + "exports/" + file.at("name").get<std::string>()));
+        files.push_back(std::move(file));
     }
+    tape.add(of + "exports", "application/json", to_text({{"files", files}}));
     return {};
 }
 
@@ -298,6 +301,7 @@ Result<Recorded> record(OpenSession& open, const RecordOptions& options, const S
             TALUS_ASSIGN(const json now,
                          asker.get_json("scenarios/" + message.at("scenario").get<std::string>() + "/state"));
             message.update(now);
+            if (goes_on(message)) message["status"] = "paused";  // on the tape it does not go on
         }
         if (message.at("type") != "people") tape.say(std::move(message));
     }

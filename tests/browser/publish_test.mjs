@@ -5,6 +5,7 @@ import { existsSync, mkdirSync, readFileSync, writeFileSync } from "node:fs";
 import { createServer } from "node:http";
 import { extname, join, resolve } from "node:path";
 import { pathToFileURL } from "node:url";
+import { startServer } from "./twin/harness.mjs";
 
 const [, , folder, talus] = process.argv;
 const output = resolve(folder);
@@ -63,6 +64,10 @@ async function open(address, viewport, settings = {}) {
   await page.waitForSelector(".topbar h1", { timeout: 60_000 });
   await page.waitForFunction(() => document.querySelector(".clock")?.textContent.startsWith("0.00"), null, { timeout: 60_000 });
   return { page, asked, problems, close: () => context.close() };
+}
+/** Waits until `condition` holds. */
+async function shown(condition) {
+  while (!(await condition())) await new Promise((next) => setTimeout(next, 100));
 }
 const clock = (page) => page.locator(".clock").innerText().then((text) => Number.parseFloat(text));
 const silent = ({ asked, problems }, own) => {
@@ -187,6 +192,22 @@ try {
     await broken.getByRole("alert").waitFor();
     if (!/cut off/.test(await broken.getByRole("alert").innerText())) throw new Error(await broken.getByRole("alert").innerText());
     await context.close();
+  });
+
+  await check("the live twin exports its session as such a page", async () => {
+    const server = await startServer([talus, "serve", "--port", "0", "--json", "--run", ...small]);
+    try {
+      await shown(async () => (await server.ask("scenarios/A/state")).time_s > 1);
+      const listed = (await server.ask("scenarios/A/exports")).files.map((one) => one.name);
+      if (!listed.includes("twin.html")) throw new Error(`exports are ${listed}`);
+      const exported = join(output, "exported.html");
+      writeFileSync(exported, await server.text("scenarios/A/exports/twin.html"));
+      const opened = await open(pathToFileURL(exported).href, { width: 1000, height: 700 });
+      silent(opened, (url) => url === pathToFileURL(exported).href || url.startsWith("blob:") || url.startsWith("data:"));
+      await opened.close();
+    } finally {
+      await server.stop();
+    }
   });
 
   const engine = run("publish", "-o", join(output, "engine.html"), "--force", ...small);
