@@ -152,7 +152,7 @@ Json risk_results(const StudyResult& result) {
     std::vector<run::RunVerdict> verdicts;
     std::size_t failed = 0;
     for (const OptionOutcome& outcome : result.outcomes) {
-        verdicts.push_back(outcome.verdict);
+        verdicts.insert(verdicts.end(), outcome.verdicts.begin(), outcome.verdicts.end());
         failed += outcome.failed;
     }
     const run::RunVerdict verdict = run::judge_together(verdicts);

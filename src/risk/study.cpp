@@ -261,6 +261,7 @@ Result<OptionOutcome> read_outcome(const Study& study, const std::string& option
     made.debris = debris.take();
     if (study.exposures.map_death != nullptr) made.individual = individual.take();
     made.verdict = judge_together(records);
+    for (ensemble::RunRecord& record : records) made.verdicts.push_back(std::move(record.verdict));
     return made;
 }
 

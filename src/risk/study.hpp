@@ -65,6 +65,7 @@ struct OptionOutcome {
     Grid<float> individual;   ///< death in a year of a person who is always there; NaN: none; empty: not wanted
     std::size_t failed = 0;   ///< runs
     run::RunVerdict verdict;  ///< of all runs
+    std::vector<run::RunVerdict> verdicts{};  ///< of each
 };
 
 /// Reads the complete ensembles of an option. Errors: a record cannot be read; fewer than two complete runs.
