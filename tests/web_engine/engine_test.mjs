@@ -46,9 +46,9 @@ assert.equal(get('/api/scenarios/Z/state').status, 404);
 assert.equal(get('/api/scenarios/A/layers/nonsense').status, 404);
 assert.equal(get('/api/scenarios/A/layers/depth?time=3').status, 400);
 
-const acted = post('/api/scenarios/A/actions', { action: 'set_parameters', friction_coefficient: 0.3 });
+const acted = post('/api/scenarios/A/actions', { action: 'set_parameters', values: { 'material.friction_coefficient': 0.3 } });
 assert.equal(acted.status, 200, new TextDecoder().decode(acted.body));
-const refused = post('/api/scenarios/A/actions', { action: 'set_parameters', friction_coefficient: -3 });
+const refused = post('/api/scenarios/A/actions', { action: 'set_parameters', values: { 'material.friction_coefficient': -3 } });
 assert.equal(refused.status, 400);
 assert.match(json(refused).error, /friction_coefficient/);
 
@@ -60,10 +60,10 @@ const line = [
     [middle[0] - 20, middle[1]],
     [middle[0] + 20, middle[1]],
 ];
-const built = post('/api/scenarios/A/actions', { action: 'add_barrier', line, height_m: 3, thickness_m: 1 });
+const built = post('/api/scenarios/A/actions', { action: 'put_barrier', line, height_m: 3, thickness_m: 1 });
 assert.equal(built.status, 200, new TextDecoder().decode(built.body));
 
-assert.equal(post('/api/scenarios/A/actions', { action: 'set_speed', factor: 0 }).status, 200);
+assert.equal(post('/api/scenarios/A/actions', { action: 'set_speed', factor: null }).status, 200);
 assert.equal(post('/api/scenarios/A/actions', { action: 'run' }).status, 200);
 const begin = performance.now();
 const until = Number(process.env.TALUS_RUN_S ?? 2);
