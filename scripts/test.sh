@@ -59,6 +59,16 @@ install_browser_tests() {
     fi
 }
 
+# Builds the page's engine with emscripten, and compares its results with the program's.
+test_page_engine() {
+    scripts/install_packages.sh publish
+    cmake --preset release
+    cmake --build --preset release --target talus test_pack --parallel "$(nproc)"
+    apps/web_engine/build.sh build/web_engine
+    (cd web && npm ci --no-audit --no-fund)
+    tests/web_engine/run.sh
+}
+
 step "packages"
 scripts/install_packages.sh test
 if (($# == 0)); then set -- release; fi
@@ -84,8 +94,12 @@ for name in "$@"; do
             # Debian's Python, for which its QGIS is made.
             PATH=$PWD/build/release/bin:$PATH /usr/bin/python3 -m unittest discover --start-directory tests/qgis --verbose
             ;;
+        publish)
+            step "publish"
+            test_page_engine
+            ;;
         *)
-            echo "scripts/test.sh: $name is none of release, asan, tsan, style, qgis, dev" >&2
+            echo "scripts/test.sh: $name is none of release, asan, tsan, style, qgis, publish, dev" >&2
             exit 2
             ;;
     esac

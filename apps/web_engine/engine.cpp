@@ -19,7 +19,7 @@
 
 /// A session behind functions of C, for web/src/engine/engine.ts. Texts are UTF-8 and have a length. A function that
 /// fails returns 0, and the result is a sentence.
-namespace talus::web {
+namespace talus::web_engine {
 namespace {
 
 using session::Bytes;
@@ -123,28 +123,28 @@ std::string text(const char* data, int size) {
 }
 
 }  // namespace
-}  // namespace talus::web
+}  // namespace talus::web_engine
 
-using talus::web::engine;
+using talus::web_engine::engine;
 
 extern "C" {
 
 /// 1: the result is the hash of the state at time 0.
 EMSCRIPTEN_KEEPALIVE int talus_open(const char* data, int size) {
-    return talus::web::guarded(
-        [&] { return talus::web::open(std::as_bytes(std::span(data, static_cast<std::size_t>(size)))); });
+    return talus::web_engine::guarded(
+        [&] { return talus::web_engine::open(std::as_bytes(std::span(data, static_cast<std::size_t>(size)))); });
 }
 
 /// The client's number; 0: no scene is open.
 EMSCRIPTEN_KEEPALIVE int talus_join(const char* name, int size) {
     if (!engine.session) return 0;
-    return talus::web::guarded([&] { return talus::web::join(talus::web::text(name, size)); });
+    return talus::web_engine::guarded([&] { return talus::web_engine::join(talus::web_engine::text(name, size)); });
 }
 
 EMSCRIPTEN_KEEPALIVE void talus_leave(int client) {
     const auto found = engine.people.find(client);
     if (found == engine.people.end()) return;
-    engine.session->leave(found->second, talus::web::now());
+    engine.session->leave(found->second, talus::web_engine::now());
     engine.people.erase(found);
     engine.collect();
 }
@@ -153,8 +153,9 @@ EMSCRIPTEN_KEEPALIVE void talus_leave(int client) {
 EMSCRIPTEN_KEEPALIVE int talus_message(int client, const char* data, int size) {
     const auto found = engine.people.find(client);
     if (found == engine.people.end()) return 0;
-    return talus::web::guarded([&] {
-        const bool welcome = engine.session->receive(found->second, talus::web::text(data, size), talus::web::now());
+    return talus::web_engine::guarded([&] {
+        const bool welcome =
+            engine.session->receive(found->second, talus::web_engine::text(data, size), talus::web_engine::now());
         engine.collect();
         return welcome ? 1 : 0;
     });
@@ -164,9 +165,10 @@ EMSCRIPTEN_KEEPALIVE int talus_message(int client, const char* data, int size) {
 EMSCRIPTEN_KEEPALIVE int talus_request(int client, const char* method, int method_size, const char* target,
                                        int target_size, const char* body, int body_size) {
     if (!engine.session) return 0;
-    return talus::web::guarded([&] {
-        return talus::web::request(client, talus::web::text(method, method_size), talus::web::text(target, target_size),
-                                   talus::web::text(body, body_size));
+    return talus::web_engine::guarded([&] {
+        return talus::web_engine::request(client, talus::web_engine::text(method, method_size),
+                                          talus::web_engine::text(target, target_size),
+                                          talus::web_engine::text(body, body_size));
     });
 }
 
@@ -175,13 +177,13 @@ EMSCRIPTEN_KEEPALIVE int talus_request(int client, const char* method, int metho
 EMSCRIPTEN_KEEPALIVE double talus_tick(double budget_ms) {
     if (!engine.session) return -1;
     double wait = -1;
-    const int worked = talus::web::guarded([&] {
+    const int worked = talus::web_engine::guarded([&] {
         using std::chrono::duration;
         const auto budget = std::chrono::duration_cast<talus::session::Clock::duration>(
             duration<double, std::milli>(std::clamp(budget_ms, 0.0, 1e4)));
-        const auto next = engine.session->advance(talus::web::now, budget);
+        const auto next = engine.session->advance(talus::web_engine::now, budget);
         engine.collect();
-        if (next) wait = std::max(0.0, duration<double, std::milli>(*next - talus::web::now()).count());
+        if (next) wait = std::max(0.0, duration<double, std::milli>(*next - talus::web_engine::now()).count());
         return 1;
     });
     return worked == 1 ? wait : -2;
@@ -190,20 +192,20 @@ EMSCRIPTEN_KEEPALIVE double talus_tick(double budget_ms) {
 /// Takes the next message to a person: the result. The client's number, negative for a frame; 0: there is none.
 EMSCRIPTEN_KEEPALIVE int talus_next_message() {
     if (engine.outgoing.empty()) return 0;
-    talus::web::Message message = std::move(engine.outgoing.front());
+    talus::web_engine::Message message = std::move(engine.outgoing.front());
     engine.outgoing.pop_front();
-    talus::web::result = std::move(message.bytes);
+    talus::web_engine::result = std::move(message.bytes);
     return message.binary ? -message.client : message.client;
 }
 
 EMSCRIPTEN_KEEPALIVE const char* talus_result() {
-    return talus::web::result ? talus::web::result->data() : nullptr;
+    return talus::web_engine::result ? talus::web_engine::result->data() : nullptr;
 }
 EMSCRIPTEN_KEEPALIVE int talus_result_size() {
-    return talus::web::result ? static_cast<int>(talus::web::result->size()) : 0;
+    return talus::web_engine::result ? static_cast<int>(talus::web_engine::result->size()) : 0;
 }
 EMSCRIPTEN_KEEPALIVE const char* talus_result_type() {
-    return talus::web::result_type.c_str();
+    return talus::web_engine::result_type.c_str();
 }
 
 }  // extern "C"

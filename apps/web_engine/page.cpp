@@ -12,10 +12,14 @@
 
 /// What a page has in place of libraries and hardware of a machine.
 
-namespace talus::web {
+namespace talus::web_engine {
 namespace {
 
 std::optional<double> latitude;
+
+std::optional<double> known_latitude() {
+    return latitude;
+}
 
 }  // namespace
 
@@ -23,31 +27,20 @@ void set_latitude(std::optional<double> degrees) {
     latitude = degrees;
 }
 
-}  // namespace talus::web
+}  // namespace talus::web_engine
 
-namespace talus::geo {
-
-std::optional<double> latitude_deg(const Crs& /*crs*/, const PlanPoint& /*p*/) {
-    return web::latitude;
+std::optional<double> talus::geo::latitude_deg(const Crs& /*crs*/, const PlanPoint& /*p*/) {
+    return web_engine::known_latitude();
 }
 
-}  // namespace talus::geo
-
-namespace talus::sim::device {
-
-std::unique_ptr<Backend> make_host_backend() {
+std::unique_ptr<talus::sim::device::Backend> talus::sim::device::make_host_backend() {
     throw DeviceFailure("a page has no kernels of a card; solver.backend = \"cpu\" gives the same result");
 }
 
-}  // namespace talus::sim::device
-
-namespace talus::observe::device {
-
-std::unique_ptr<Particles> make_particles(sim::device::Backend& /*backend*/) {
+std::unique_ptr<talus::observe::device::Particles> talus::observe::device::make_particles(
+    sim::device::Backend& /*backend*/) {
     return nullptr;
 }
-
-}  // namespace talus::observe::device
 
 extern "C" ssize_t getrandom(void* buffer, size_t size, unsigned /*flags*/) {
     constexpr std::size_t most = 256;  // of getentropy

@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <cstdlib>
 #include <memory>
+#include <span>
 #include <sstream>
 
 #include "cli/small_scene.hpp"
@@ -14,6 +15,7 @@
 #include "foreign_targets.hpp"
 #include "geo/json_text.hpp"
 #include "geo/mesh.hpp"
+#include "pack/pack.hpp"
 #include "scene/hydrograph.hpp"
 #include "scene/scene.hpp"
 #include "serve/client.hpp"
@@ -215,6 +217,12 @@ const LiveServer& server() {
     static const LiveServer live;
     return live;
 }
+/// The whole file, and as if its hash were right.
+bool packed_scene(const std::string& bytes) {
+    const bool whole = read_or_refused(pack::read(std::as_bytes(std::span(bytes)), "twin.talus"));
+    return read_or_refused(pack::read_content(bytes, "twin.talus")) || whole;
+}
+
 bool http(const std::string& bytes) {
     server().take(bytes, false);
     return true;
@@ -242,6 +250,7 @@ constexpr std::array all = {Target{"scene_toml", scene_toml},
                             Target{"bundle", bundle},
                             Target{"session_file", session_file},
                             Target{"draft_setup", draft_setup},
+                            Target{"packed_scene", packed_scene},
                             Target{"http", http},
                             Target{"websocket", websocket}};
 

@@ -26,10 +26,10 @@ json table() {
 }
 
 std::string packed_scene(const json& row) {
-    const auto scene = scene::load_scene(TALUS_SOURCE_DIR "/" + row.at("scene").get<std::string>(),
-                                         row.at("set").get<std::vector<std::string>>());
+    const auto set = row.at("set").get<std::vector<std::string>>();
+    const auto scene = scene::load_scene(TALUS_SOURCE_DIR "/" + row.at("scene").get<std::string>(), set);
     if (!scene) throw std::runtime_error(scene.error().message);
-    return write({.scene = *scene});
+    return write({.scene = *scene, .overrides = set});
 }
 
 class GoldenScene : public testing::TestWithParam<std::string> {};
