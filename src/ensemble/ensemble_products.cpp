@@ -313,7 +313,9 @@ Status write_ensemble(const EnsembleResult& result, const fs::path& folder) {
     const auto reached =
         std::find_if(maps.begin(), maps.end(), [](const EnsembleMap& map) { return !map.grid.values.empty(); });
     if (reached != maps.end()) {
-        TALUS_TRY(products::write_terrain(*result.scene, reached->grid.geometry.extent(), folder, layers));
+        std::vector<products::WriteJob> terrain;
+        products::add_terrain(*result.scene, reached->grid.geometry.extent(), folder, layers, terrain);
+        for (const products::WriteJob& job : terrain) TALUS_TRY(job.write());
     }
     TALUS_TRY(layers.write(folder));
     TALUS_TRY(write_ensemble_tables(result, folder));

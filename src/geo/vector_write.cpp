@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <memory>
 
+#include <cpl_conv.h>
 #include <cpl_string.h>
 #include <fmt/format.h>
 #include <ogr_geometry.h>
@@ -82,6 +83,9 @@ bool write_feature(OGRLayer& layer, const OutputFeature& from) {
 }
 
 GDALDatasetUniquePtr open_geopackage(const std::string& file) {
+    // SQLite would wait for the disk several times per layer. As every other product, the file is in a folder that gets
+    // its name when it is complete. SQLite reads the option when it opens the file.
+    const CPLConfigOptionSetter no_waiting("OGR_SQLITE_SYNCHRONOUS", "OFF", false);
     VSIStatBufL existing;
     if (VSIStatL(file.c_str(), &existing) == 0) {
         return GDALDatasetUniquePtr(

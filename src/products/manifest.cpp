@@ -11,6 +11,7 @@
 
 #include "core/angle.hpp"
 #include "core/hash.hpp"
+#include "core/phases.hpp"
 #include "geo/versions.hpp"
 #include "params/fields.hpp"
 #include "products/results_json.hpp"
@@ -201,31 +202,50 @@ Json results(const run::RunResult& result) {
             {"compression", result.depth_averaged() ? Json() : compression_json(o)}};
 }
 
-Json performance(const run::RunResult& result) {
+/// From the scene's files to the last product before the manifest: wall time of each part. Products are written beside
+/// each other, so that theirs add up to more than passed.
+Json phases(const scene::Scene& scene, const run::RunResult& result, const std::vector<Phase>& written) {
+    std::vector<Phase> all = {{"load", scene.load_time}};
+    if (result.zoom) all.push_back({"depth_averaged_model", result.zoom->wall_time});
+    all.push_back({"seed", result.seed_time});
+    all.push_back({"steps", result.step_time()});
+    all.push_back({"finish", result.finish_time});
+    all.insert(all.end(), written.begin(), written.end());
+    Json list = Json::array();
+    for (const Phase& phase : all) list.push_back({{"phase", phase.name}, {"wall_s", phase.seconds}});
+    return list;
+}
+
+Json performance(const scene::Scene& scene, const run::RunResult& result, const std::vector<Phase>& written) {
     const double steps = static_cast<double>(result.steps);
     const double per_step = steps > 0 ? 1 / steps : observe::never;
     const double per_wall = result.wall_time > 0 ? 1 / result.wall_time : observe::never;
+    const double step_time = result.step_time();
     Json stages = Json::array();
-    double rest = result.wall_time;
+    double rest = step_time;
     const auto add = [&](std::string_view name, double seconds) {
         stages.push_back({{"stage", name},
                           {"total_s", seconds},
                           {"per_step_ms", 1e3 * seconds * per_step},
-                          {"share", seconds * per_wall}});
+                          {"share", step_time > 0 ? seconds / step_time : observe::never}});
+        rest -= seconds;
     };
-    // The depth-averaged model does not time its stages.
-    for (std::size_t i = 0; i < sim::stage_count && !result.depth_averaged(); ++i) {
-        add(sim::step_stages[i].name, result.stage_times.seconds[i]);
-        rest -= result.stage_times.seconds[i];
+    if (result.depth_averaged()) {
+        for (const Phase& stage : result.grid_stages) add(stage.name, stage.seconds);
+    } else {
+        for (std::size_t i = 0; i < sim::stage_count; ++i) {
+            add(sim::step_stages[i].name, result.stage_times.seconds[i]);
+        }
+        add("other", std::max(0.0, rest));
     }
-    if (!result.depth_averaged()) add("other", std::max(0.0, rest));
     return {{"simulated_time_s", result.simulated_time},
             {"wall_time_s", result.wall_time},
             {"real_time_factor", result.real_time_factor()},
             {"steps", result.steps},
             {"steps_per_second", steps * per_wall},
             {"step_ms", 1e3 * result.wall_time * per_step},
-            {"stages", stages}};
+            {"stages", stages},
+            {"phases", phases(scene, result, written)}};
 }
 
 Json versions() {
@@ -319,7 +339,8 @@ std::string title_of(const scene::Scene& scene, const run::RunResult& result) {
 }
 
 Status write_manifest(const scene::Scene& scene, const run::RunResult& result,
-                      const std::vector<run::Comparison>& comparisons, const std::filesystem::path& folder) {
+                      const std::vector<run::Comparison>& comparisons, const std::filesystem::path& folder,
+                      const std::vector<Phase>& written) {
     const params::SceneInfo& info = scene.spec.scene;
     const Json manifest = {
         {"program", "talus"},
@@ -333,7 +354,7 @@ Status write_manifest(const scene::Scene& scene, const run::RunResult& result,
         {"result_hash", to_hex(result.hash)},
         {"results", results(result)},
         {"comparisons", comparisons_json(comparisons)},
-        {"performance", performance(result)},
+        {"performance", performance(scene, result, written)},
         {"hardware", hardware()},
         {"versions", versions()},
         {"scene_file", scene.file.string()},

@@ -1,7 +1,11 @@
 #include "products/products.hpp"
 
+#include <cstddef>
+#include <vector>
+
 #include <fmt/format.h>
 
+#include "core/phases.hpp"
 #include "core/try.hpp"
 #include "products/fault_files.hpp"
 #include "products/results_json.hpp"
@@ -9,6 +13,8 @@
 #include "products/writers.hpp"
 #include "report/report.hpp"
 #include "report/results.hpp"
+#include "run/threads.hpp"
+#include "simd/parallel.hpp"
 
 namespace talus::products {
 
@@ -33,6 +39,20 @@ Status write_report(const scene::Scene& scene, const run::RunResult& result,
     return write_text_file(folder / "report.html", page);
 }
 
+/// Errors: that of the first job in their order, whichever failed first.
+Status write_beside_each_other(const std::vector<WriteJob>& jobs, PhaseTimes& times) {
+    std::vector<Status> written(jobs.size());
+    // The report takes longest: it comes first.
+    simd::parallel_ranges(jobs.size(), 1, [&](std::size_t first, std::size_t last) {
+        for (std::size_t k = first; k < last; ++k) {
+            const std::size_t job = jobs.size() - 1 - k;
+            written[job] = times.time(jobs[job].name, jobs[job].write);
+        }
+    });
+    for (const Status& status : written) TALUS_TRY(status);
+    return {};
+}
+
 }  // namespace
 
 Status write_products(const scene::Scene& scene, const run::RunResult& result, const std::filesystem::path& folder,
@@ -40,19 +60,24 @@ Status write_products(const scene::Scene& scene, const run::RunResult& result, c
                       const std::vector<double>& frame_times, std::vector<std::string>* missing) {
     TALUS_TRY(write_partial_note(result, folder));
     if (result.fault) TALUS_TRY(write_fault(*result.fault, folder / "fault"));
+    PhaseTimes times;
+    const run::Threads threads(scene.spec.solver.thread_count);
     LayerDefinition layers(title_of(scene, result), scene.crs.wkt);
-    TALUS_TRY(write_maps(scene, result, folder, layers));
-    TALUS_TRY(write_terrain(scene, result.observation.maps.peak_depth.geometry.extent(), folder, layers));
+    std::vector<WriteJob> jobs;
+    add_maps(scene, result, folder, layers, jobs);
+    add_terrain(scene, result.observation.maps.peak_depth.geometry.extent(), folder, layers, jobs);
     add_maps_over_time(scene, result, frame_times, folder, layers);
-    TALUS_TRY(write_tables(scene, result, folder, changed));
-    TALUS_TRY(write_vectors(scene, result, folder, layers, missing));
+    jobs.push_back({"tables", [&] { return write_tables(scene, result, folder, changed); }});
+    // The only job that adds to `layers`.
+    jobs.push_back({"vectors", [&] { return write_vectors(scene, result, folder, layers, missing); }});
+    jobs.push_back({"kml", [&] { return write_kml(scene, result, folder); }});
+    jobs.push_back({"report", [&] { return write_report(scene, result, comparisons, folder); }});
+    TALUS_TRY(threads.execute([&] { return write_beside_each_other(jobs, times); }));
     TALUS_TRY(layers.write(folder));
-    TALUS_TRY(write_kml(scene, result, folder));
     TALUS_TRY(write_comparisons(comparisons, result, folder));
-    TALUS_TRY(write_report(scene, result, comparisons, folder));
     TALUS_TRY(write_stac_item(scene, result, folder));
     // Last, as it lists the files; a folder that has one is complete.
-    return write_manifest(scene, result, comparisons, folder);
+    return write_manifest(scene, result, comparisons, folder, times.all());
 }
 
 }  // namespace talus::products

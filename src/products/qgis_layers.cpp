@@ -49,13 +49,16 @@ const report::HazardMap& peak_map_of(const SeriesQuantity& quantity) {
 
 }  // namespace
 
-Status write_terrain(const scene::Scene& scene, const Extent& place, const std::filesystem::path& folder,
-                     LayerDefinition& layers) {
-    const Grid<float> elevation = cells_around(scene.terrain.elevation(), place);
-    const std::string style = report::qgis_hillshade_style(), stem = (folder / "terrain").string();
-    TALUS_TRY(write_cog(stem + ".tif", {&elevation, "elevation of the terrain", "m"}, scene.crs));
+void add_terrain(const scene::Scene& scene, const Extent& place, const std::filesystem::path& folder,
+                 LayerDefinition& layers, std::vector<WriteJob>& jobs) {
+    const std::string style = report::qgis_hillshade_style();
     layers.add_raster("Terrain, hillshade", "terrain.tif", style, true);
-    return write_text_file(stem + ".qml", style);
+    jobs.push_back({"terrain", [&scene, place, folder, style]() -> Status {
+                        const Grid<float> elevation = cells_around(scene.terrain.elevation(), place);
+                        const std::string stem = (folder / "terrain").string();
+                        TALUS_TRY(write_cog(stem + ".tif", {&elevation, "elevation of the terrain", "m"}, scene.crs));
+                        return write_text_file(stem + ".qml", style);
+                    }});
 }
 
 void add_maps_over_time(const scene::Scene& scene, const run::RunResult& result, const std::vector<double>& times,

@@ -1,11 +1,13 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <string>
 #include <string_view>
 #include <utility>
 #include <vector>
 
+#include "core/phases.hpp"
 #include "core/result.hpp"
 #include "products/layer_definition.hpp"
 #include "run/comparison.hpp"
@@ -15,15 +17,21 @@
 /// The parts of write_products, one per kind of file. Lengths in m, times in s unless a suffix says otherwise.
 namespace talus::products {
 
+/// Some files of a folder, to be written beside others.
+struct WriteJob {
+    std::string name;  ///< of the phase in the manifest
+    std::function<Status()> write;
+};
+
 /// peak_depth.tif, ..., intensity.tif, and erosion_depth.tif where anything was eroded, each with a QGIS style beside
-/// it. They are added to `layers`.
-[[nodiscard]] Status write_maps(const scene::Scene& scene, const run::RunResult& result,
-                                const std::filesystem::path& folder, LayerDefinition& layers);
+/// it. They are added to `layers`; a job writes each. `scene` and `result` must outlive the jobs.
+void add_maps(const scene::Scene& scene, const run::RunResult& result, const std::filesystem::path& folder,
+              LayerDefinition& layers, std::vector<WriteJob>& jobs);
 
 /// terrain.tif, the elevations of a place and around it, with a style that draws their hillshade. It is added to
-/// `layers`: below all that is added before.
-[[nodiscard]] Status write_terrain(const scene::Scene& scene, const Extent& place, const std::filesystem::path& folder,
-                                   LayerDefinition& layers);
+/// `layers`, below all that is added before; a job writes it, which `scene` must outlive.
+void add_terrain(const scene::Scene& scene, const Extent& place, const std::filesystem::path& folder,
+                 LayerDefinition& layers, std::vector<WriteJob>& jobs);
 
 /// Adds the maps over time to `layers`, from the GeoTIFF or else the NetCDF files of the folder's series. `times`: of
 /// all frames, s; empty: there are none.
@@ -68,10 +76,11 @@ struct WrittenLayer {
 [[nodiscard]] Status write_comparisons(const std::vector<run::Comparison>& comparisons, const run::RunResult& base,
                                        const std::filesystem::path& folder);
 
-/// manifest.json: everything needed to repeat and to assess the run. A value that does not exist is null.
+/// manifest.json: everything needed to repeat and to assess the run. A value that does not exist is null. `written`:
+/// how long the products before it took.
 [[nodiscard]] Status write_manifest(const scene::Scene& scene, const run::RunResult& result,
                                     const std::vector<run::Comparison>& comparisons,
-                                    const std::filesystem::path& folder);
+                                    const std::filesystem::path& folder, const std::vector<Phase>& written = {});
 
 /// "given", "traced" or "followed".
 [[nodiscard]] const char* origin_text(scene::PathOrigin origin);

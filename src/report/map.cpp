@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
+#include <utility>
 #include <vector>
 
 #include <fmt/format.h>
@@ -15,6 +17,7 @@
 #include "report/intensity.hpp"
 #include "report/number_text.hpp"
 #include "report/relief.hpp"
+#include "report/rows.hpp"
 
 namespace talus::report {
 namespace {
@@ -52,15 +55,16 @@ ClassImage paint(const HazardMap& layer, const Grid<float>& map, const Classes& 
     const int longest = std::max(g.columns, g.rows);
     const int finer = std::clamp(1200 / std::max(1, longest), 1, 8);
     ClassImage image{g.columns * finer, g.rows * finer, {}, classes.colours};
-    image.pixels.reserve(static_cast<std::size_t>(image.width) * image.height);
+    image.pixels.resize(static_cast<std::size_t>(image.width) * image.height);
     const double pixel = g.cell / finer, north = g.y_min + g.rows * g.cell;
-    for (int y = 0; y < image.height; ++y) {
+    for_rows(image.height, [&](int y) {
+        std::uint8_t* out = &image.pixels[static_cast<std::size_t>(image.width) * y];
         for (int x = 0; x < image.width; ++x) {
             const PlanPoint at{g.x_min + (x + 0.5) * pixel, north - (y + 0.5) * pixel};
             const double v = layer.categories.empty() ? interpolate(map, at) : value_at(map, at);
-            image.pixels.push_back(static_cast<std::uint8_t>(classes.of(v * layer.factor) + 1));
+            *out++ = static_cast<std::uint8_t>(classes.of(v * layer.factor) + 1);
         }
-    }
+    });
     return image;
 }
 
@@ -240,6 +244,44 @@ std::string definitions(const scene::Scene& scene, const MapContent& content, co
 
 }  // namespace
 
+namespace {
+
+/// A layer's pictures, which take most of the time of a report: for the eye, and the values for the page's script.
+struct LayerPictures {
+    std::string classes;    ///< as a URI
+    Extent extent;          ///< of the picture
+    nlohmann::json placed;  ///< the values, and where they lie
+};
+
+Result<LayerPictures> pictures_of(const MapLayer& shown, const MapFrame& frame, const Classes& classes) {
+    const HazardMap& layer = shown.style;
+    const bool classed = !layer.categories.empty();  // classes have no mean
+    const Grid<float> part = crop(*shown.grid, frame.area, classed ? 1 << 20 : 1200);
+    LayerPictures pictures;
+    pictures.extent = part.geometry.extent();
+    TALUS_ASSIGN(pictures.classes, png_uri(paint(layer, part, classes)));
+    const Grid<float> coarse = classed ? part : crop(*shown.grid, frame.area, 500);
+    const ReadOut values = read_out_of(coarse, layer.factor);
+    TALUS_ASSIGN(const std::string uri, png_uri(values.image));
+    pictures.placed = placed(coarse, values, uri);
+    return Result<LayerPictures>(std::move(pictures));
+}
+
+/// Of every layer that has a value; nothing for the others.
+std::vector<std::optional<Result<LayerPictures>>> all_pictures(const MapContent& content, const MapFrame& frame) {
+    std::vector<std::optional<Result<LayerPictures>>> all(content.layers.size());
+    simd::parallel_ranges(all.size(), 1, [&](std::size_t first, std::size_t last) {
+        for (std::size_t k = first; k < last; ++k) {
+            const MapLayer& shown = content.layers[k];
+            const double most = largest(*shown.grid) * shown.style.factor;
+            if (std::isfinite(most)) all[k] = pictures_of(shown, frame, classes_of(shown.style, most));
+        }
+    });
+    return all;
+}
+
+}  // namespace
+
 Result<Json> map_figures(const scene::Scene& scene, const MapContent& content) {
     const MapFrame frame = map_frame(scene, content);
     const Grid<float> ground = crop(scene.terrain.elevation(), frame.area, 900);
@@ -275,27 +317,23 @@ Result<Json> map_figures(const scene::Scene& scene, const MapContent& content) {
                            {"ground", placed(coarse_ground, ground_values, ground_uri)},
                            {"layers", nlohmann::json::array()}};
 
-    for (const MapLayer& shown : content.layers) {
+    auto pictures = all_pictures(content, frame);
+    for (std::size_t k = 0; k < content.layers.size(); ++k) {
+        const MapLayer& shown = content.layers[k];
         const HazardMap& layer = shown.style;
         const Grid<float>& map = *shown.grid;
         const double most = largest(map) * layer.factor;
         const Classes classes = classes_of(layer, most);
         Svg picture;
         picture.add("use", {{"href", "#map-base"}});
-        if (std::isfinite(most)) {
-            // Classes have no mean.
-            const bool classed = !layer.categories.empty();
-            const Grid<float> part = crop(map, frame.area, classed ? 1 << 20 : 1200);
-            const Extent e = part.geometry.extent();
-            TALUS_ASSIGN(auto uri, png_uri(paint(layer, part, classes)));
+        if (pictures[k]) {
+            TALUS_ASSIGN(LayerPictures made, std::move(*pictures[k]));
+            const Extent& e = made.extent;
             picture.open("g", {clip()});
             draw_image(picture, "layer", frame.x(e.x_min), frame.y(e.y_max), e.width() * frame.scale,
-                       e.height() * frame.scale, uri);
+                       e.height() * frame.scale, made.classes);
             picture.close("g");
-            const Grid<float> coarse = classed ? part : crop(map, frame.area, 500);
-            const ReadOut values = read_out_of(coarse, layer.factor);
-            TALUS_ASSIGN(auto values_uri, png_uri(values.image));
-            nlohmann::json entry = placed(coarse, values, values_uri);
+            nlohmann::json entry = std::move(made.placed);
             entry["id"] = layer.file;
             entry["name"] = shown.tab;
             entry["unit"] = layer.unit;

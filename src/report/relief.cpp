@@ -6,6 +6,8 @@
 #include <numbers>
 #include <tuple>
 
+#include "report/rows.hpp"
+
 namespace talus::report {
 namespace {
 
@@ -68,9 +70,9 @@ Grid<float> crop(const Grid<float>& grid, const Extent& extent, int longest_side
     const GridGeometry part{g.x_min + c0 * g.cell, g.y_min + r0 * g.cell, g.cell * step,
                             std::max(1, (c1 - c0 + step - 1) / step), std::max(1, (r1 - r0 + step - 1) / step)};
     Grid<float> out(part, no_data);
-    for (int r = 0; r < part.rows; ++r) {
+    for_rows(part.rows, [&](int r) {
         for (int c = 0; c < part.columns; ++c) out.at(c, r) = block_mean(grid, c0 + c * step, r0 + r * step, step);
-    }
+    });
     return out;
 }
 
@@ -79,6 +81,12 @@ double interpolate(const Grid<float>& grid, const PlanPoint& p) {
     const double u = (p.x - g.x_min) / g.cell - 0.5, v = (p.y - g.y_min) / g.cell - 0.5;
     const int c = static_cast<int>(std::floor(u)), r = static_cast<int>(std::floor(v));
     const double fu = u - c, fv = v - r;
+    if (c >= 0 && r >= 0 && c + 1 < g.columns && r + 1 < g.rows) {
+        const float *low = &grid.at(c, r), *high = &grid.at(c, r + 1);
+        // Most of a map has no debris.
+        const bool none = std::isnan(low[0]) && std::isnan(low[1]) && std::isnan(high[0]) && std::isnan(high[1]);
+        if (none) return std::numeric_limits<double>::quiet_NaN();
+    }
     double sum = 0, weight = 0;
     for (const auto& [dc, dr, w] :
          {std::tuple{0, 0, (1 - fu) * (1 - fv)}, {1, 0, fu * (1 - fv)}, {0, 1, (1 - fu) * fv}, {1, 1, fu * fv}}) {
@@ -93,24 +101,25 @@ double interpolate(const Grid<float>& grid, const PlanPoint& p) {
 
 GreyImage hillshade(const Grid<float>& elevation, const Extent& extent, double pixels_per_metre) {
     Grid<float> light(elevation.geometry);
-    for (int r = 0; r < light.geometry.rows; ++r) {
+    for_rows(light.geometry.rows, [&](int r) {
         for (int c = 0; c < light.geometry.columns; ++c) light.at(c, r) = shade(elevation, c, r);
-    }
+    });
     GreyImage image{std::max(1, static_cast<int>(std::lround(extent.width() * pixels_per_metre))),
                     std::max(1, static_cast<int>(std::lround(extent.height() * pixels_per_metre))),
                     {}};
-    image.pixels.reserve(2 * static_cast<std::size_t>(image.width) * image.height);
-    for (int y = 0; y < image.height; ++y) {
+    image.pixels.resize(2 * static_cast<std::size_t>(image.width) * image.height);
+    for_rows(image.height, [&](int y) {
+        std::uint8_t* pixel = &image.pixels[2 * static_cast<std::size_t>(image.width) * y];
         for (int x = 0; x < image.width; ++x) {
             const PlanPoint p{extent.x_min + (x + 0.5) / image.width * extent.width(),
                               extent.y_max - (y + 0.5) / image.height * extent.height()};
             const double l = interpolate(light, p);
             // Kept light, so that debris, lines and text stand out on it; 64 greys are sufficient and compress well.
             const double grey = std::isnan(l) ? 255 : 136 + 116 * std::clamp((l - 0.10) / 0.90, 0.0, 1.0);
-            image.pixels.push_back(static_cast<std::uint8_t>(std::min(255L, std::lround(grey / 2) * 2)));
-            image.pixels.push_back(std::isnan(l) ? 0 : 255);
+            *pixel++ = static_cast<std::uint8_t>(std::min(255L, std::lround(grey / 2) * 2));
+            *pixel++ = std::isnan(l) ? 0 : 255;
         }
-    }
+    });
     return image;
 }
 

@@ -1,7 +1,6 @@
 #include "run/depth_run.hpp"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <optional>
 #include <utility>
@@ -9,6 +8,7 @@
 
 #include <fmt/format.h>
 
+#include "core/phases.hpp"
 #include "core/try.hpp"
 #include "depth/entrainment.hpp"
 #include "depth/inflow.hpp"
@@ -19,6 +19,7 @@
 #include "run/depth_grid.hpp"
 #include "run/forecast.hpp"
 #include "run/grid_fault.hpp"
+#include "run/grid_stages.hpp"
 #include "run/saved_state.hpp"
 #include "run/stop_rule.hpp"
 #include "run/threads.hpp"
@@ -130,8 +131,10 @@ class GridRun {
     bool advance() {
         if (over()) return false;
         const params::SolverSpec& spec = scene_.spec.solver;
+        stages_.begin();
         keep_good_state();
-        const auto start = std::chrono::steady_clock::now();
+        stages_.end(GridStage::keep_good);
+        const StopWatch watch;
         double longest = scene_.spec.outputs.sample_interval;
         for (const terrain::Release& release : scene_.releases) {
             const double wait = release.spec.start_time - solver_.time();
@@ -139,14 +142,20 @@ class GridRun {
         }
         const Result<double> stepped =
             inflows_.advance(solver_, longest, observer_.released(), spec.end_time - solver_.time());
+        stages_.end(GridStage::advance_cells);
         friction_inside_.resist(solver_);
-        wall_time_ += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+        stages_.end(GridStage::resist_inside);
+        wall_time_ += watch.seconds();
         smallest_ = std::min(smallest_, solver_.time_step());
         largest_ = std::max(largest_, solver_.time_step());
         observer_.note_inflow(stepped ? *stepped : 0, inflow_energy_.highest(solver_));
+        stages_.end(GridStage::observe);
         observer_.note_entrainment(bed_.entrain(solver_));
+        stages_.end(GridStage::entrain_bed);
         observer_.after_step(solver_, held_, wall_time_ > 0 ? static_cast<double>(solver_.steps()) / wall_time_ : 0);
+        stages_.end(GridStage::observe);
         release_due();
+        stages_.end(GridStage::release_held);
         const Status trusted = stepped ? find_grid_fault(solver_, observer_) : Status(stepped.error());
         if (!trusted) {
             fault_ = record_grid_fault(ground_.bed, good_, solver_, trusted.error().message);
@@ -154,6 +163,7 @@ class GridRun {
         } else if (!over()) {
             judge();
         }
+        stages_.end(GridStage::check_and_judge);
         return stop_reason_.empty();
     }
 
@@ -223,6 +233,7 @@ class GridRun {
         result.grid_cell = solver_.geometry().cell;
         result.grid_cells = solver_.geometry().size();
         result.cell_updates = solver_.cell_updates();
+        result.grid_stages = stages_.all();
         return result;
     }
 
@@ -323,6 +334,7 @@ class GridRun {
     std::size_t released_ = 0;
     double held_ = 0, judged_ = 0;  ///< judged_: s, the sample by which it was not over
     double wall_time_ = 0, smallest_ = 1e9, largest_ = 0;
+    GridStageTimes stages_;
     /// Of a few steps ago, after the last release: a fault is explained with it.
     GridState good_;
     std::size_t good_released_ = 0;
@@ -339,6 +351,7 @@ class GridRun {
 Result<RunResult> run_depth_averaged(const scene::Scene& scene, const RunOptions& options, Inside inside) {
     const Threads threads(scene.spec.solver.thread_count);
     return threads.execute([&]() -> Result<RunResult> {
+        const StopWatch seeding;
         GridRun run(scene, inside);
         TALUS_TRY(run.check_inflows());
         if (!options.start_from.empty()) {
@@ -354,6 +367,7 @@ Result<RunResult> run_depth_averaged(const scene::Scene& scene, const RunOptions
         const auto show_frame = [&](bool at_end = false) {
             if (clock.due(run.time(), at_end)) options.on_frame(run.frame());
         };
+        const double seed_time = seeding.seconds();
         show_frame();
         look_at_state();
         for (bool goes_on = true; goes_on && !stopped();) {
@@ -369,7 +383,11 @@ Result<RunResult> run_depth_averaged(const scene::Scene& scene, const RunOptions
             look_at_state(true);
             show_frame(true);
         }
-        return run.result(threads.count());
+        const StopWatch finishing;
+        RunResult result = run.result(threads.count());
+        result.seed_time = seed_time;
+        result.finish_time = finishing.seconds();
+        return Result<RunResult>(std::move(result));
     });
 }
 

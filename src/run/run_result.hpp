@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "core/phases.hpp"
 #include "observe/observation.hpp"
 #include "run/fault_record.hpp"
 #include "run/zoom_record.hpp"
@@ -40,11 +41,13 @@ struct RunResult {
     std::string stop_reason;           ///< "debris came to rest (less than 0.1 % of it moving for 3 s)", the fault, ...
     std::optional<FaultRecord> fault;  ///< at fault
     observe::Observation observation;
-    sim::StageTimes stage_times;
-    std::uint64_t hash = 0;       ///< of time, ids, positions and velocities at the end, in id order
-    std::uint32_t particles = 0;  ///< from releases and inflows, without removed or entrained ones
+    sim::StageTimes stage_times;     ///< of particles
+    std::vector<Phase> grid_stages;  ///< of the depth-averaged model
+    std::uint64_t hash = 0;          ///< of time, ids, positions and velocities at the end, in id order
+    std::uint32_t particles = 0;     ///< from releases and inflows, without removed or entrained ones
     std::uint64_t steps = 0;
-    double simulated_time = 0, wall_time = 0;  ///< s; wall time of the steps alone
+    double simulated_time = 0, wall_time = 0;  ///< s; wall time of the model's steps, with a grid without measurements
+    double seed_time = 0, finish_time = 0;     ///< s of wall time: before the first step, and after the last one
     double smallest_time_step = 0, largest_time_step = 0;
     double particle_spacing = 0, support_radius = 0, map_cell = 0;
     double viscosity = 0, kinematic_viscosity = 0;  ///< smoothing per 1/60 s; its equivalent in m2/s
@@ -68,6 +71,13 @@ struct RunResult {
     /// That, in a word.
     [[nodiscard]] const char* domain() const { return zoom ? "zoom" : "terrain"; }
     [[nodiscard]] bool depth_averaged() const { return grid_cell > 0; }
+    /// s of wall time that all steps took, with their measurements.
+    [[nodiscard]] double step_time() const {
+        if (!depth_averaged()) return wall_time;
+        double sum = 0;
+        for (const Phase& stage : grid_stages) sum += stage.seconds;
+        return sum;
+    }
     [[nodiscard]] double real_time_factor() const { return wall_time > 0 ? simulated_time / wall_time : 0; }
 };
 

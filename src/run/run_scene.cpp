@@ -1,10 +1,12 @@
 #include "run/run_scene.hpp"
 
 #include <algorithm>
+#include <utility>
 
 #include <fmt/format.h>
 
 #include "core/decimals.hpp"
+#include "core/phases.hpp"
 #include "core/try.hpp"
 #include "run/depth_run.hpp"
 #include "run/forecast.hpp"
@@ -54,6 +56,7 @@ Result<RunResult> run_scene(const scene::Scene& scene, const RunOptions& options
     }
     if (scene.spec.solver.model == params::ModelChoice::depth_averaged) return run_depth_averaged(scene, options);
     if (scene.zoom) return run_zoomed(scene, options);
+    const StopWatch seeding;
     const auto started = Run::start(scene);
     if (!started) return Error{scene.file.string() + ": " + started.error().message};
     Run& run = **started;
@@ -62,6 +65,7 @@ Result<RunResult> run_scene(const scene::Scene& scene, const RunOptions& options
         const Status restored = restore_state(scene, run, options.start_from);
         if (!restored) return Error{options.start_from_file + ": " + restored.error().message};
     }
+    const double seed_time = seeding.seconds();
     StateClock state_clock(options);
     const auto look_at_state = [&](bool at_end = false) -> Status {
         const double time = run.summary().time;
@@ -92,7 +96,11 @@ Result<RunResult> run_scene(const scene::Scene& scene, const RunOptions& options
         TALUS_TRY(look_at_state(true));
         show_frame(true);
     }
-    return run.result();
+    const StopWatch finishing;
+    RunResult result = run.result();
+    result.seed_time = seed_time;
+    result.finish_time = finishing.seconds();
+    return Result<RunResult>(std::move(result));
 }
 
 void take_followed_path(scene::Scene& scene, const RunResult& result) {

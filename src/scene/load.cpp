@@ -12,6 +12,7 @@
 #include "core/coordinate_text.hpp"
 #include "core/decimals.hpp"
 #include "core/hash.hpp"
+#include "core/phases.hpp"
 #include "core/try.hpp"
 #include "geo/file_name.hpp"
 #include "geo/orthophoto.hpp"
@@ -246,8 +247,11 @@ Result<Scene> assemble_scene(const ParsedScene& parsed) {
 }
 
 Result<Scene> load_scene(const std::filesystem::path& file, const std::vector<std::string>& overrides) {
+    const StopWatch watch;
     TALUS_ASSIGN(ParsedScene parsed, parse_scene_with_places(file, overrides));
-    return assemble_scene(parsed);
+    TALUS_ASSIGN(Scene scene, assemble_scene(parsed));
+    scene.load_time = watch.seconds();
+    return Result<Scene>(std::move(scene));
 }
 
 }  // namespace talus::scene

@@ -70,6 +70,7 @@ struct Scene {
     std::vector<Grid<float>> elevation_changes;          ///< m; as in SceneSpec::elevation_changes
     std::vector<InputFile> inputs;
     std::vector<std::string> notes;  ///< what was done to the inputs: reprojections, defaults, traced path
+    double load_time = 0;            ///< s of wall time that load_scene() took
 };
 
 /// Whether a run takes the path that debris followed in place of a traced one. Not if the chainages of observations

@@ -71,6 +71,14 @@ TEST_F(Products, manifest_says_what_ran_where_and_how_fast) {
     EXPECT_EQ(m["performance"]["stages"][2]["stage"], sim::step_stages[2].name);
     EXPECT_NEAR(m["performance"]["stages"][2]["total_s"], 1.5, 1e-9);
     EXPECT_NEAR(m["performance"]["stages"][2]["share"], 1.5 / result_->wall_time, 1e-9);
+    std::vector<std::string> phases;
+    for (const json& phase : m["performance"]["phases"]) {
+        phases.push_back(phase["phase"]);
+        EXPECT_GE(phase["wall_s"], 0) << phases.back();
+    }
+    EXPECT_THAT(phases, testing::IsSupersetOf({"load", "seed", "steps", "finish", "maps", "terrain", "tables",
+                                               "vectors", "kml", "report"}));
+    EXPECT_NEAR(m["performance"]["phases"][2]["wall_s"], result_->wall_time, 1e-9);
     EXPECT_EQ(m["resolved"]["particle_spacing_m"], 0.42);
     EXPECT_EQ(m["results"]["buildings_hit"], 3);
     EXPECT_NEAR(m["results"]["greatest"]["peak_pressure_kPa"],

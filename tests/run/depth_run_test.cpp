@@ -6,6 +6,7 @@
 #include <gmock/gmock.h>
 
 #include "run/depth_grid.hpp"
+#include "run/grid_stages.hpp"
 #include "run/run.hpp"
 #include "run/run_scene.hpp"
 #include "scene/scene_folder.hpp"
@@ -39,6 +40,13 @@ TEST_F(DepthAveragedRun, has_the_results_of_a_run) {
     EXPECT_EQ(result->status, RunStatus::complete);
     EXPECT_TRUE(result->depth_averaged());
     EXPECT_EQ(result->grid_cell, 2.5);
+    EXPECT_GT(result->step_time(), result->wall_time) << "measurements are stages too";
+    EXPECT_GT(result->seed_time, 0);
+    for (const Phase& stage : result->grid_stages) {
+        const bool always = stage.name == "advance_cells" || stage.name == "observe";
+        EXPECT_GE(stage.seconds, always ? 1e-9 : 0) << stage.name;
+    }
+    EXPECT_EQ(result->grid_stages.size(), grid_stage_names.size());
     EXPECT_EQ(result->particles, 0U);
     const observe::Observation& o = result->observation;
     EXPECT_NEAR(o.volume_released, scene.releases[0].volume, 1e-4 * o.volume_released);
