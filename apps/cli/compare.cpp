@@ -16,6 +16,7 @@
 #include "products/products.hpp"
 #include "products/results_json.hpp"
 #include "products/text_file.hpp"
+#include "products/writers.hpp"
 #include "progress.hpp"
 #include "report/second_opinion.hpp"
 #include "run/run_scene.hpp"
@@ -25,7 +26,6 @@
 #include "run/words.hpp"
 #include "scene/builtin.hpp"
 #include "scene_input.hpp"
-#include "summary.hpp"
 
 namespace talus::cli {
 namespace {
@@ -113,7 +113,7 @@ std::string text_of(const report::BothModels& models, const std::vector<std::str
 std::string json_of(const report::BothModels& models, const report::Json& results, const fs::path& output) {
     const auto run = [](const run::RunResult& result) {
         return report::Json{
-            {"status", status_name(result.status)},
+            {"status", products::status_text(result.status)},
             {"verdict", verdict_json(judge(result))},
             {"hash", to_hex(result.hash)},
             {"wall_time_s", result.wall_time},

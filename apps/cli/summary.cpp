@@ -12,6 +12,7 @@
 #include "core/hash.hpp"
 #include "core/number_or_null.hpp"
 #include "products/results_json.hpp"
+#include "products/writers.hpp"
 #include "report/results.hpp"
 #include "run/verdict.hpp"
 #include "run/words.hpp"
@@ -123,18 +124,6 @@ std::string front_text(const scene::Scene& scene, const observe::Observation& se
 
 }  // namespace
 
-std::string status_name(run::RunStatus status) {
-    switch (status) {
-        case run::RunStatus::complete:
-            return "complete";
-        case run::RunStatus::interrupted:
-            return "interrupted";
-        case run::RunStatus::fault:
-            return "fault";
-    }
-    return "";
-}
-
 std::string summary_text(const scene::Scene& scene, const run::RunResult& result,
                          const std::vector<run::Comparison>& comparisons, const std::filesystem::path& output) {
     const observe::Observation& seen = result.observation;
@@ -237,7 +226,7 @@ std::string summary_json(const scene::Scene& scene, const run::RunResult& result
     }
     nlohmann::ordered_json event = {
         {"event", "result"},
-        {"status", status_name(result.status)},
+        {"status", products::status_text(result.status)},
         {"stop_reason", result.stop_reason},
         {"verdict", verdict_json(judge(result, comparisons))},
         {"title", scene.spec.scene.title},
@@ -260,18 +249,13 @@ std::string summary_json(const scene::Scene& scene, const run::RunResult& result
         {"still_moving", report::still_moving(result)},
         {"volume_held_m3", end.volume_held},
         {"volume_left_m3", end.volume_left},
-        {"front_chainage_m", number_or_null<nlohmann::ordered_json>(seen.run_out.front_chainage)},
-        {"run_out_along_flow_m", number_or_null<nlohmann::ordered_json>(seen.run_out.along_flow)},
-        {"run_out_straight_m", number_or_null<nlohmann::ordered_json>(seen.run_out.straight)},
-        {"run_out_at_least", seen.run_out.at_least},
-        {"drop_m", number_or_null<nlohmann::ordered_json>(seen.run_out.drop)},
-        {"runout_angle_deg", number_or_null<nlohmann::ordered_json>(seen.run_out.runout_angle * degrees_per_radian)},
         {"observations", observations},
         {"buildings_hit", buildings},
         {"structures", products::structures_json(seen)},
         {"cross_sections", sections},
         {"compression", result.depth_averaged() ? nlohmann::ordered_json() : products::compression_json(seen)},
     };
+    event.update(products::run_out_json(seen));
     event.update(products::comparisons_json(comparisons));
     return event.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
 }

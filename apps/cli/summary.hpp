@@ -10,9 +10,6 @@
 
 namespace talus::cli {
 
-/// "complete", "interrupted" or "fault".
-[[nodiscard]] std::string status_name(run::RunStatus status);
-
 /// The main results in a dozen lines, and a table per comparison.
 [[nodiscard]] std::string summary_text(const scene::Scene& scene, const run::RunResult& result,
                                        const std::vector<run::Comparison>& comparisons,

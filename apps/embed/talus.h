@@ -323,10 +323,10 @@ TALUS_API int talus_apply(talus_simulation* simulation, const char* action, cons
 /*
  * "scene", "state", "setup", "impacts" or "series" as JSON, as docs/protocol.md has them; "verdict": whether the
  * results so far can be relied on, as `verdict` of docs/results.md; "results": what a report of the run so far shows, as
- * results.json of docs/results.md; "measures": {"run_out": {"along_flow_m", "straight_m", "at_least" (debris left the
- * terrain), "toe_x_m", "toe_y_m", "drop_m", "runout_angle_deg", "travel_angle_deg", "front_chainage_m"}, "gauges":
- * [{"name", "x_m", "y_m", "time_s": [...], "depth_m": [...], "speed_mps": [...]}], "crs_wkt"}, with null where there is
- * no value.
+ * results.json of docs/results.md; "measures": {"run_out": {"run_out_along_flow_m", "run_out_straight_m",
+ * "run_out_at_least" (debris left the terrain), "toe_x_m", "toe_y_m", "drop_m", "runout_angle_deg", "travel_angle_deg",
+ * "front_chainage_m"}, "gauges": [{"name", "x_m", "y_m", "time_s": [...], "depth_m": [...], "speed_mps": [...]}],
+ * "crs_wkt"}, with null where there is no value.
  */
 TALUS_API int talus_get_json(const talus_simulation* simulation, const char* name, const char** json,
                              talus_error* error);

@@ -137,7 +137,7 @@ def run_out_of(measures: Mapping[str, Any]) -> RunOut:
     """Of "measures" of the library."""
     row = measures["run_out"]
     return RunOut(
-        _or_nan(row["along_flow_m"]), _or_nan(row["straight_m"]), bool(row["at_least"]),
+        _or_nan(row["run_out_along_flow_m"]), _or_nan(row["run_out_straight_m"]), bool(row["run_out_at_least"]),
         (_or_nan(row["toe_x_m"]), _or_nan(row["toe_y_m"])), _or_nan(row["drop_m"]), _or_nan(row["runout_angle_deg"]),
         _or_nan(row["travel_angle_deg"]), _or_nan(row["front_chainage_m"]),
     )  # fmt: skip

@@ -18,7 +18,7 @@ _texts = {"name", "hash", "status", "fault", "beyond_limits", "model", "phase", 
 
 
 class Table(Mapping[str, "npt.NDArray[Any]"]):
-    """A table by columns: `table["run_out_m"]` is a NumPy array with an entry per row. NaN, or an empty text, where there is
+    """A table by columns: `table["run_out_along_flow_m"]` is a NumPy array with an entry per row. NaN, or an empty text, where there is
     none. to_pandas() makes a DataFrame of it."""
 
     def __init__(self, columns: Mapping[str, npt.ArrayLike]) -> None:

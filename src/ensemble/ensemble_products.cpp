@@ -178,6 +178,20 @@ Status write_maps(const EnsembleResult& result, const fs::path& folder, products
     return {};
 }
 
+/// `what`: "medium intensity or higher".
+report::HazardMap probability_style(std::string file, const std::string& what) {
+    report::HazardMap style;
+    style.file = std::move(file);
+    style.title = "Probability of " + what;
+    style.description = fmt::format("share of runs with {}, in", what);
+    style.unit = "%";
+    style.factor = 100;
+    style.breaks = {1, 5, 10, 25, 50, 75, 90, 95};
+    style.full_scale = 100;
+    style.ramp = probability_ramp;
+    return style;
+}
+
 }  // namespace
 
 std::vector<double> EnsembleResult::values_of(std::size_t measure) const {
@@ -222,30 +236,13 @@ report::HazardMap style_of(const EnsembleMap& map) {
         return style;
     }
     const QuantityWords& words = threshold_words.at(map.map);
-    report::HazardMap style;
-    style.file = fmt::format("probability_{}_{}{}", words.file, map.level, words.file_unit);
-    style.title = fmt::format("Probability of {} over {} {}", words.name, map.level, words.unit);
-    style.description = fmt::format("share of runs with {} over {} {}, in", words.name, map.level, words.unit);
-    style.unit = "%";
-    style.factor = 100;
-    style.breaks = {1, 5, 10, 25, 50, 75, 90, 95};
-    style.full_scale = 100;
-    style.ramp = probability_ramp;
-    return style;
+    return probability_style(fmt::format("probability_{}_{}{}", words.file, map.level, words.file_unit),
+                             fmt::format("{} over {} {}", words.name, map.level, words.unit));
 }
 
 report::HazardMap intensity_odds_style(const report::IntensityClass& intensity, bool most_severe) {
-    report::HazardMap style;
-    style.file = "probability_intensity_" + intensity.name;
-    style.title = fmt::format("Probability of {} intensity{}", intensity.name, most_severe ? "" : " or higher");
-    style.description =
-        fmt::format("share of runs with {} intensity{}, in", intensity.name, most_severe ? "" : " or higher");
-    style.unit = "%";
-    style.factor = 100;
-    style.breaks = {1, 5, 10, 25, 50, 75, 90, 95};
-    style.full_scale = 100;
-    style.ramp = probability_ramp;
-    return style;
+    return probability_style("probability_intensity_" + intensity.name,
+                             fmt::format("{} intensity{}", intensity.name, most_severe ? "" : " or higher"));
 }
 
 Json effect_json(stats::SensitivityKind kind, const std::string& factor, const stats::FactorEffect& e) {

@@ -11,10 +11,10 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include "core/angle.hpp"
 #include "core/number_or_null.hpp"
 #include "core/try.hpp"
 #include "ensemble/predict.hpp"
+#include "observe/number_names.hpp"
 #include "products/checked_file.hpp"
 #include "report/hazard_map.hpp"
 
@@ -122,15 +122,14 @@ run::RunVerdict judge_together(const std::vector<RunRecord>& runs) {
 }
 
 std::vector<Measure> measures_of(const scene::Scene& scene) {
-    std::vector<Measure> list = {{"run_out_m", "Run-out along the flow", "m"},
-                                 {"run_out_straight_m", "Run-out in a straight line", "m"},
-                                 {"drop_m", "Drop from crown to toe", "m"},
-                                 {"runout_angle_deg", "Run-out angle", "deg"},
-                                 {"travel_angle_deg", "Travel angle of the centres of mass", "deg"},
-                                 {"reached_area_m2", "Area reached", "m2"},
-                                 {"largest_depth_m", "Largest peak depth", "m"},
-                                 {"largest_speed_mps", "Largest peak speed", "m/s"},
-                                 {"duration_s", "Time until the run ended", "s"}};
+    std::vector<Measure> list;
+    for (const observe::NamedNumber& number : observe::run_out_numbers) {
+        list.push_back({std::string(number.key), number.title, number.unit});
+    }
+    list.insert(list.end(), {{"reached_area_m2", "Area reached", "m2"},
+                             {"largest_depth_m", "Largest peak depth", "m"},
+                             {"largest_speed_mps", "Largest peak speed", "m/s"},
+                             {"duration_s", "Time until the run ended", "s"}});
     if (!scene.buildings.empty()) list.push_back({"buildings_hit", "Buildings hit", ""});
     for (const ObservedValue& o : observed_values(scene)) list.push_back({o.key, o.name, o.unit});
     return list;
@@ -138,15 +137,10 @@ std::vector<Measure> measures_of(const scene::Scene& scene) {
 
 std::vector<double> measure(const scene::Scene& scene, const run::RunResult& result) {
     const observe::Observation& o = result.observation;
-    std::vector<double> values = {o.run_out.along_flow,
-                                  o.run_out.straight,
-                                  o.run_out.drop,
-                                  o.run_out.runout_angle * degrees_per_radian,
-                                  o.run_out.travel_angle * degrees_per_radian,
-                                  reached_area(o.maps),
-                                  report::greatest(o.maps.peak_depth),
-                                  report::greatest(o.maps.peak_speed),
-                                  result.simulated_time};
+    std::vector<double> values;
+    for (const observe::NamedNumber& number : observe::run_out_numbers) values.push_back(number.value(o));
+    values.insert(values.end(), {reached_area(o.maps), report::greatest(o.maps.peak_depth),
+                                 report::greatest(o.maps.peak_speed), result.simulated_time});
     if (!scene.buildings.empty()) {
         values.push_back(static_cast<double>(hits_among(o.buildings, false).hit));
     }

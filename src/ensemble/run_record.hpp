@@ -21,7 +21,7 @@ namespace talus::ensemble {
 
 /// A scalar result of a run.
 struct Measure {
-    std::string key;   ///< "run_out_m", "observation[0].front_velocity_mps"
+    std::string key;   ///< "run_out_along_flow_m", "observation[0].front_velocity_mps"
     std::string name;  ///< "Run-out along the flow"
     std::string unit;  ///< "m"
 };

@@ -182,24 +182,19 @@ Json results(const run::RunResult& result) {
         volumes["left_m3"] = last.volume_left;
     }
     const observe::Hits buildings = hits_among(o.buildings, false), barriers = hits_among(o.buildings, true);
-    return {{"front_chainage_m", o.run_out.front_chainage},
-            {"run_out_along_flow_m", o.run_out.along_flow},
-            {"run_out_straight_m", o.run_out.straight},
-            {"run_out_at_least", o.run_out.at_least},
-            {"drop_m", o.run_out.drop},
-            {"runout_angle_deg", o.run_out.runout_angle * degrees_per_radian},
-            {"travel_angle_deg", o.run_out.travel_angle * degrees_per_radian},
-            {"greatest", greatest_values},
-            {"volumes", volumes},
-            {"buildings", buildings.all},
-            {"buildings_hit", buildings.hit},
-            {"barriers", barriers.all},
-            {"barriers_hit", barriers.hit},
-            {"structures", structures_json(o)},
-            {"gauges", gauges_json(o)},
-            {"cross_sections", cross_sections_json(o)},
-            {"zoom", zoom_json(result)},
-            {"compression", result.depth_averaged() ? Json() : compression_json(o)}};
+    Json all = run_out_json(o);
+    all.update({{"greatest", greatest_values},
+                {"volumes", volumes},
+                {"buildings", buildings.all},
+                {"buildings_hit", buildings.hit},
+                {"barriers", barriers.all},
+                {"barriers_hit", barriers.hit},
+                {"structures", structures_json(o)},
+                {"gauges", gauges_json(o)},
+                {"cross_sections", cross_sections_json(o)},
+                {"zoom", zoom_json(result)},
+                {"compression", result.depth_averaged() ? Json() : compression_json(o)}});
+    return all;
 }
 
 /// From the scene's files to the last product before the manifest: wall time of each part. Products are written beside

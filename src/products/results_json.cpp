@@ -3,6 +3,8 @@
 #include <cmath>
 
 #include "core/hash.hpp"
+#include "core/number_or_null.hpp"
+#include "observe/number_names.hpp"
 #include "products/text_file.hpp"
 #include "sim/compression.hpp"
 
@@ -63,6 +65,15 @@ Json comparison_json(const run::Comparison& comparison) {
 }
 
 }  // namespace
+
+Json run_out_json(const observe::Observation& observation) {
+    Json all = {{observe::front_number.key, number_or_null<Json>(observe::front_number.value(observation))}};
+    for (const observe::NamedNumber& number : observe::run_out_numbers) {
+        all[std::string(number.key)] = number_or_null<Json>(number.value(observation));
+        if (number.key == "run_out_straight_m") all["run_out_at_least"] = observation.run_out.at_least;
+    }
+    return all;
+}
 
 Json compression_json(const observe::Observation& observation) {
     const observe::Compression& c = observation.compression;

@@ -10,6 +10,9 @@
 /// Parts of a result as the manifest and `talus run --json` both give them. A value that does not exist is null.
 namespace talus::products {
 
+/// Every key of run_out_numbers, the front, and "run_out_at_least".
+[[nodiscard]] nlohmann::ordered_json run_out_json(const observe::Observation& observation);
+
 /// Worst compression, its time, its limits, and whether the run stayed within them.
 [[nodiscard]] nlohmann::ordered_json compression_json(const observe::Observation& observation);
 

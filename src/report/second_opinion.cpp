@@ -6,9 +6,9 @@
 
 #include <fmt/format.h>
 
-#include "core/angle.hpp"
 #include "core/decimals.hpp"
 #include "core/number_or_null.hpp"
+#include "observe/number_names.hpp"
 #include "report/number_text.hpp"
 #include "report/results.hpp"
 #include "report/second_opinion_parts.hpp"
@@ -27,6 +27,9 @@ std::vector<Quantity> quantities(const BothModels& models, const run::SecondOpin
     const auto add = [&](const std::string& name, const char* unit, const std::string& format, const auto& value) {
         all.push_back({name, unit, format, value(p), value(d)});
     };
+    const auto add_number = [&](const observe::NamedNumber& number, const char* unit, const std::string& format) {
+        add(number.title, unit, format, number.value);
+    };
     for (const params::ObservationSpec& observed : models.scene.spec.observations) {
         const std::string at = fmt::format(" at {} m", plain(observed.chainage));
         add(observed.quantity() + at, "m/s", "f1", [&](const auto& o) { return computed_for(observed, o); });
@@ -36,10 +39,10 @@ std::vector<Quantity> quantities(const BothModels& models, const run::SecondOpin
     }
     const std::string metres = fmt::format("f{}", length_decimals(models.scene));
     const std::string square_metres = fmt::format("f{}", decimals_for(opinion.area.both + opinion.area.only_first, 0));
-    add("Front to chainage", "m", metres, [](const auto& o) { return o.run_out.front_chainage; });
-    add("Run-out along the flow", "m", metres, [](const auto& o) { return o.run_out.along_flow; });
-    add("Run-out in a straight line", "m", metres, [](const auto& o) { return o.run_out.straight; });
-    add("Run-out angle", "°", "f1", [](const auto& o) { return o.run_out.runout_angle * degrees_per_radian; });
+    add_number(observe::front_number, "m", metres);
+    add_number(observe::run_out_numbers[0], "m", metres);
+    add_number(observe::run_out_numbers[1], "m", metres);
+    add_number(observe::run_out_numbers[3], "°", "f1");
     all.push_back({"Affected area", "m²", square_metres, opinion.area.both + opinion.area.only_first,
                    opinion.area.both + opinion.area.only_second});
     add("Deposit, area", "m²", square_metres, [](const auto& o) { return o.deposit.area; });
@@ -148,8 +151,9 @@ Json cards(const BothModels& models, const run::SecondOpinion& opinion) {
                               std::isfinite(percent) ? fmt::format(", {}\u00a0%", formatted(percent, "d0")) : "")
                 : ""));
     };
-    of_particles("run_out_along_flow_m", "Run-out along the flow", models.particles.observation.run_out.along_flow,
-                 models.depth_averaged.observation.run_out.along_flow, "f0", "m");
+    const observe::NamedNumber& run_out = observe::run_out_number;
+    of_particles(run_out.key.data(), run_out.title, run_out.value(models.particles.observation),
+                 run_out.value(models.depth_averaged.observation), "f0", run_out.unit);
     of_particles("peak_speed_mps", "Peak speed", opinion.speed.peak_particles.value,
                  opinion.speed.peak_depth_averaged.value, "f1", "m/s");
     of_particles("peak_dynamic_pressure_kPa", "Peak dynamic pressure", opinion.pressure.peak_particles.value / 1e3,

@@ -8,6 +8,7 @@
 
 #include "core/number_or_null.hpp"
 #include "observe/map_names.hpp"
+#include "observe/number_names.hpp"
 #include "observe/peaks.hpp"
 #include "report/number_text.hpp"
 #include "run/second_opinion.hpp"
@@ -95,8 +96,9 @@ json compared(const scene::Scene& scene, const run::RunResult& particles, const 
                      [&](const auto& o) { return front_at(o, observed.chainage).arrival_time; });
         }
     }
-    rows.add("front_chainage", "Front to chainage", "m", 0, [](const auto& o) { return o.run_out.front_chainage; });
-    rows.add("run_out", "Run-out along the flow", "m", 0, [](const auto& o) { return o.run_out.along_flow; });
+    for (const observe::NamedNumber* number : {&observe::front_number, &observe::run_out_number}) {
+        rows.add(std::string(number->key), number->title, number->unit, number->decimals, number->value);
+    }
     rows.add("affected_area", "Affected area", "m2", 0, now.both + now.only_first, now.both + now.only_second,
              at_end.both + at_end.only_second);
     // Maps of peaks are of whole runs.

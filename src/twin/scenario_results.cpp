@@ -6,11 +6,11 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include "core/angle.hpp"
 #include "core/number_or_null.hpp"
 #include "observe/erosion.hpp"
 #include "observe/map_names.hpp"
 #include "products/products.hpp"
+#include "products/results_json.hpp"
 #include "report/results.hpp"
 #include "run/run_scene.hpp"
 #include "twin/json_keys.hpp"
@@ -149,18 +149,10 @@ json Scenario::measures_json() const {
                           {"depth_m", std::move(depth)},
                           {"speed_mps", std::move(speed)}});
     }
-    return {{"run_out",
-             {{"along_flow_m", number(r.along_flow)},
-              {"straight_m", number(r.straight)},
-              {"at_least", r.at_least},
-              {"toe_x_m", number(r.toe.x)},
-              {"toe_y_m", number(r.toe.y)},
-              {"drop_m", number(r.drop)},
-              {"runout_angle_deg", number(r.runout_angle * degrees_per_radian)},
-              {"travel_angle_deg", number(r.travel_angle * degrees_per_radian)},
-              {"front_chainage_m", number(r.front_chainage)}}},
-            {"gauges", std::move(gauges)},
-            {"crs_wkt", parts_->scene->crs.wkt}};
+    json run_out = products::run_out_json(result.observation);
+    run_out["toe_x_m"] = number(r.toe.x);
+    run_out["toe_y_m"] = number(r.toe.y);
+    return {{"run_out", std::move(run_out)}, {"gauges", std::move(gauges)}, {"crs_wkt", parts_->scene->crs.wkt}};
 }
 
 std::function<Status(const std::filesystem::path&)> Scenario::products() const {

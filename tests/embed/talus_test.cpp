@@ -244,8 +244,8 @@ TEST(Library, says_what_a_run_has_measured_without_writing_files) {
         const std::size_t at = measures.find("\"" + key + "\":");
         return at == std::string::npos ? std::nan("") : std::atof(measures.c_str() + at + key.size() + 3);
     };
-    EXPECT_GT(number("along_flow_m"), 1);
-    EXPECT_GT(number("along_flow_m"), 0.9 * number("straight_m"));
+    EXPECT_GT(number("run_out_along_flow_m"), 1);
+    EXPECT_GT(number("run_out_along_flow_m"), 0.9 * number("run_out_straight_m"));
     EXPECT_GT(number("drop_m"), 1);
     EXPECT_NE(measures.find("PROJCRS"), std::string::npos);
     EXPECT_NE(measures.find("\"gauges\":[]"), std::string::npos);

@@ -52,9 +52,9 @@ class EnsembleTest(unittest.TestCase):
             runs = ensemble.runs
             self.assertEqual(runs.rows, 12)
             self.assertTrue(((runs[KEY] >= 0.2) & (runs[KEY] <= 0.4)).all())
-            self.assertLess(np.corrcoef(runs[KEY], runs["run_out_m"])[0, 1], -0.5)
+            self.assertLess(np.corrcoef(runs[KEY], runs["run_out_along_flow_m"])[0, 1], -0.5)
             rows = list(ensemble.distributions["result"])
-            self.assertAlmostEqual(ensemble.distributions["mean"][rows.index("run_out_m")], runs["run_out_m"].mean(), places=3)
+            self.assertAlmostEqual(ensemble.distributions["mean"][rows.index("run_out_along_flow_m")], runs["run_out_along_flow_m"].mean(), places=3)
             self.assertEqual(set(ensemble.sensitivity["factor"]), {KEY})
             self.assertIn("House 38", ensemble.buildings["name"])
             self.assertEqual(ensemble.results["format"], "talus ensemble")

@@ -111,7 +111,7 @@ TEST(DepthAveragedBeside, compares_both_by_the_same_time_and_as_a_whole) {
         }
         return json();
     };
-    EXPECT_LT(row(half, "front_chainage")["depth_averaged_by_then"], row(half, "front_chainage")["depth_averaged"]);
+    EXPECT_LT(row(half, "front_chainage_m")["depth_averaged_by_then"], row(half, "front_chainage_m")["depth_averaged"]);
     EXPECT_LT(row(half, "affected_area")["depth_averaged_by_then"], row(half, "affected_area")["depth_averaged"]);
     EXPECT_EQ(row(half, "front_velocity")["observed"], 8);
     const double by_then = half["area"]["intersection_over_union"];

@@ -1194,7 +1194,7 @@ export interface DepthAveragedStatus {
 /** A quantity of both models: particles so far, the other model by the same time and at its end. */
 export interface DepthAveragedRow {
   /** Which quantity. */
-  key: "front_velocity" | "front_arrival" | "front_chainage" | "run_out" | "affected_area" | "peak_depth" | "peak_speed" | "peak_pressure";
+  key: "front_velocity" | "front_arrival" | "front_chainage_m" | "run_out_along_flow_m" | "affected_area" | "peak_depth" | "peak_speed" | "peak_pressure";
   /** For people. */
   name: string;
   /** Of the values. */
