@@ -69,39 +69,19 @@ Measure arrival(const scene::Scene& scene, const observe::Observation& base) {
     return m;
 }
 
-Measure run_out() {
-    Measure m;
-    m.quantity = {.key = "run_out",
-                  .suffix = "m",
-                  .name = "run-out",
-                  .unit = "m",
-                  .not_measured = "no debris is left to measure"};
-    m.value = [](const observe::Observation& o) { return o.run_out.along_flow; };
-    return m;
-}
-
-Measure deposit_area() {
-    Measure m;
-    m.quantity = {.key = "deposit_area",
-                  .suffix = "m2",
-                  .name = "deposit area",
-                  .unit = "m²",
-                  .limit_percent = 10,
-                  .not_measured = "nothing was deposited"};
-    m.value = [](const observe::Observation& o) { return o.deposit.area > 0 ? o.deposit.area : observe::never; };
-    return m;
-}
-
-Measure deposit_depth() {
-    Measure m;
-    m.quantity = {.key = "deposit_depth",
-                  .suffix = "m",
-                  .name = "deposit depth",
-                  .unit = "m",
-                  .limit_percent = 10,
-                  .not_measured = "nothing was deposited"};
-    m.value = [](const observe::Observation& o) { return o.deposit.depth; };
-    return m;
+/// Run-out, and area and depth of the deposit.
+void add_deposit(std::vector<Measure>& all) {
+    const char* const none = "nothing was deposited";
+    all.push_back({{.key = "run_out",
+                    .suffix = "m",
+                    .name = "run-out",
+                    .unit = "m",
+                    .not_measured = "no debris is left to measure"},
+                   [](const observe::Observation& o) { return o.run_out.along_flow; }});
+    all.push_back({{"deposit_area", "m2", "deposit area", "m²", 10, observe::never, none},
+                   [](const observe::Observation& o) { return o.deposit.area > 0 ? o.deposit.area : observe::never; }});
+    all.push_back({{"deposit_depth", "m", "deposit depth", "m", 10, observe::never, none},
+                   [](const observe::Observation& o) { return o.deposit.depth; }});
 }
 
 Measure peak(const char* key, const char* suffix, const char* name, const char* unit,
@@ -185,9 +165,7 @@ std::vector<Measure> measures(ComparisonKind kind, const scene::Scene& scene, co
         if (!twice) all.push_back(std::move(m));
     }
     all.push_back(arrival(scene, base));
-    all.push_back(run_out());
-    all.push_back(deposit_area());
-    all.push_back(deposit_depth());
+    add_deposit(all);
     if (kind == ComparisonKind::sensitivity) {
         // Peaks are those of single cells: no measure of convergence.
         all.push_back(peak("peak_depth", "m", "peak depth", "m", &observe::Peaks::depth));

@@ -14,7 +14,7 @@ namespace {
 
 using ::testing::HasSubstr;
 
-std::string source(const char* path) {
+std::string file_text(const char* path) {
     std::ifstream file(std::string(TALUS_SOURCE_DIR) + "/" + path);
     std::stringstream text;
     text << file.rdbuf();
@@ -43,8 +43,8 @@ TEST(NumberNames, a_number_is_given_in_the_unit_that_its_key_ends_with) {
 }
 
 TEST(NumberNames, files_and_other_languages_call_them_by_their_keys) {
-    const std::string table = source("src/products/tables.cpp"), header = source("apps/embed/talus.h");
-    const std::string module = source("python/talus/measures.py");
+    const std::string table = file_text("src/products/tables.cpp"), header = file_text("apps/embed/talus.h");
+    const std::string module = file_text("python/talus/measures.py");
     for (const NamedNumber& number : all_numbers()) {
         EXPECT_THAT(table, HasSubstr(std::string(number.key))) << "run_out.csv";
         EXPECT_THAT(header, HasSubstr(fmt::format("\"{}\"", number.key)));
@@ -53,7 +53,7 @@ TEST(NumberNames, files_and_other_languages_call_them_by_their_keys) {
 }
 
 TEST(NumberNames, the_description_of_the_server_and_the_page_have_those_that_models_are_compared_by) {
-    const std::string protocol = source("src/serve/protocol.json"), page = source("web/src/protocol/messages.ts");
+    const std::string protocol = file_text("src/serve/protocol.json"), page = file_text("web/src/protocol/messages.ts");
     for (const NamedNumber& number : {front_number, run_out_number}) {
         EXPECT_THAT(protocol, HasSubstr(fmt::format("'{}'", number.key)));
         EXPECT_THAT(page, HasSubstr(fmt::format("\"{}\"", number.key)));
