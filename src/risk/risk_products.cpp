@@ -266,7 +266,9 @@ Status write_study(const StudyResult& result, const fs::path& folder) {
         TALUS_TRY(write_map(result, debris_style(result, k), outcome.debris, folder, false, layers));
     }
     if (const Grid<float>& reached = result.outcomes.front().debris; !reached.values.empty()) {
-        TALUS_TRY(products::write_terrain(result.scene(), reached.geometry.extent(), folder, layers));
+        std::vector<products::WriteJob> terrain;
+        products::add_terrain(result.scene(), reached.geometry.extent(), folder, layers, terrain);
+        for (const products::WriteJob& job : terrain) TALUS_TRY(job.write());
     }
     TALUS_TRY(layers.write(folder));
     TALUS_TRY(products::write_text_file(folder / "risk.csv", items_csv(result, result.risks, 0)));
