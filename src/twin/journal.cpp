@@ -11,6 +11,7 @@
 #include "core/try.hpp"
 #include "geo/json_text.hpp"
 #include "twin/json_keys.hpp"
+#include "twin/kinds.hpp"
 #include "twin/scenario.hpp"
 
 namespace talus::twin {
@@ -24,8 +25,9 @@ constexpr int version = 1;
 class JournalReader {
   public:
     /// Refuses any other key.
-    void keys(const json& object, const char* of, std::initializer_list<std::string_view> known) {
-        const Status s = object.is_object() ? check_keys(object, known) : Status();
+    void keys(const json& object, const char* of, std::initializer_list<std::string_view> known,
+              const std::vector<std::string>& also = {}) {
+        const Status s = object.is_object() ? check_keys(object, also, known) : Status();
         if (!s) refuse(of + (": " + s.error().message));
     }
     const json& object(const json& parent, const char* key) {
@@ -83,21 +85,12 @@ json write_journal(const Journal& journal) {
         if (!entry.setup.is_null()) written["setup"] = entry.setup;
         actions.push_back(std::move(written));
     }
+    json next = json::object();
+    for_each_kind([&]<class Kind>(Kind) { next[Kind::name] = journal.next.*Kind::number; });
     return {{"talus_journal", version},
             {"scene", {{"file", journal.scene_file}, {"overrides", journal.overrides}, {"inputs", inputs}}},
             {"first_setup", journal.first_setup},
-            {"next",
-             {{"release", journal.next.release},
-              {"barrier", journal.next.barrier},
-              {"building", journal.next.building},
-              {"zone", journal.next.zone},
-              {"bed", journal.next.bed},
-              {"inflow", journal.next.inflow},
-              {"gauge", journal.next.gauge},
-              {"note", journal.next.note},
-              {"observation", journal.next.observation},
-              {"trigger", journal.next.trigger},
-              {"alarm", journal.next.alarm}}},
+            {"next", next},
             {"actions", actions},
             {"last",
              {{"step", journal.steps},
@@ -130,19 +123,13 @@ Result<Journal> read_journal(const std::string& text) {
     }
     journal.first_setup = read.object(file, "first_setup");
     const json& next = read.object(file, "next");
-    read.keys(next, "next",
-              {"release", "barrier", "building", "zone", "bed", "inflow", "gauge", "note", "observation", "trigger",
-               "alarm"});
-    journal.next = {static_cast<int>(read.whole(next, "release")),  static_cast<int>(read.whole(next, "barrier")),
-                    static_cast<int>(read.whole(next, "building")), static_cast<int>(read.whole(next, "zone")),
-                    static_cast<int>(read.whole(next, "bed")),      static_cast<int>(read.whole(next, "inflow"))};
-    // Journals did not always have these.
-    for (const auto& [key, number] :
-         {std::pair("gauge", &journal.next.gauge), std::pair("note", &journal.next.note),
-          std::pair("observation", &journal.next.observation), std::pair("trigger", &journal.next.trigger),
-          std::pair("alarm", &journal.next.alarm)}) {
-        if (next.contains(key)) *number = static_cast<int>(read.whole(next, key));
-    }
+    std::vector<std::string> names;
+    for_each_kind([&]<class Kind>(Kind) {
+        names.emplace_back(Kind::name);
+        if (!Kind::in_every_file && !next.contains(Kind::name)) return;
+        journal.next.*Kind::number = static_cast<int>(read.whole(next, Kind::name));
+    });
+    read.keys(next, "next", {}, names);
     std::uint64_t before = 0;
     for (const json& entry : read.list(file, "actions")) {
         read.keys(entry, "actions", {"step", "by", "action", "setup"});

@@ -15,6 +15,7 @@
 #include "scene/known_ground.hpp"
 #include "terrain/release.hpp"
 #include "terrain/terrain.hpp"
+#include "twin/json_keys.hpp"
 #include "twin/setup.hpp"
 
 namespace talus::twin {
@@ -29,6 +30,9 @@ struct Redrawn {
 
 /// `outline`: the key of the ring; `move_m` moves all parts and courtyards, which a single ring cannot describe.
 /// Errors: a move of a shape that does not exist yet, or both.
+[[nodiscard]] Result<Redrawn> read_redrawn(const nlohmann::json& action, const char* outline, const char* what,
+                                           bool exists);
+/// Errors also: no ring of a new one.
 [[nodiscard]] Result<Redrawn> read_outline(const nlohmann::json& action, const char* outline, const char* what,
                                            bool exists);
 
@@ -61,13 +65,42 @@ template <class Part>
     return {};
 }
 
-/// Checks that it covers no ground of the setup's other releases. `own_id`: its id in the setup; may be empty.
-[[nodiscard]] Status check_overlaps(const terrain::Release& release, const Setup& setup, const std::string& own_id);
-
 /// Maximum number of points of a drawn outline or line.
 inline constexpr std::size_t max_points = 500;
 
 /// "line: missing; a new barrier needs it".
 [[nodiscard]] Error missing(const char* key, const char* what);
+
+// Of setup files. Errors name key and value.
+
+[[nodiscard]] Error not_of_a_setup(const char* key, const nlohmann::json& file);
+[[nodiscard]] Result<std::string> read_name(const nlohmann::json& file);
+/// "polygons": of each the outer ring, then holes.
+[[nodiscard]] Result<std::vector<Polygon>> read_polygons(const nlohmann::json& file);
+
+/// "polygons", and under `numbers` a number of each.
+template <class Part>
+void write_parts(const std::vector<Part>& parts, const char* numbers, double Part::*number, nlohmann::json& file) {
+    file["polygons"] = file[numbers] = nlohmann::json::array();
+    for (const Part& part : parts) {
+        file["polygons"].push_back(to_json(part.polygon));
+        file[numbers].push_back(part.*number);
+    }
+}
+
+template <class Part>
+[[nodiscard]] Status read_parts(const nlohmann::json& file, const char* numbers, double Part::*number,
+                                std::vector<Part>& parts) {
+    TALUS_ASSIGN(auto polygons, read_polygons(file));
+    const nlohmann::json values = file.value(numbers, nlohmann::json());
+    if (!values.is_array() || values.size() != polygons.size()) return not_of_a_setup(numbers, file);
+    parts.assign(polygons.size(), {});
+    for (std::size_t k = 0; k < parts.size(); ++k) {
+        if (!values[k].is_number()) return not_of_a_setup(numbers, file);
+        parts[k].polygon = std::move(polygons[k]);
+        parts[k].*number = values[k].template get<double>();
+    }
+    return {};
+}
 
 }  // namespace talus::twin

@@ -14,6 +14,7 @@
 #include "scene/particle_spacing.hpp"
 #include "twin/action.hpp"
 #include "twin/json_keys.hpp"
+#include "twin/kinds.hpp"
 #include "twin/scenario_parts.hpp"
 #include "twin/setup_file.hpp"
 #include "twin/trigger.hpp"
@@ -128,10 +129,11 @@ Result<std::unique_ptr<Scenario>> Scenario::open_at(const Journal& journal, std:
     // Former journals have no numbers for these: those of the scene have the first ones.
     NextNumbers of_scene;
     static_cast<void>(setup_of(*parts->scene, of_scene));
-    for (const auto number :
-         {&NextNumbers::gauge, &NextNumbers::observation, &NextNumbers::trigger, &NextNumbers::alarm}) {
-        parts->next.*number = std::max(parts->next.*number, of_scene.*number);
-    }
+    for_each_kind([&]<class Kind>(Kind) {
+        if (Kind::in_every_file) return;
+        int& number = parts->next.*Kind::number;
+        number = std::max(number, of_scene.*Kind::number);
+    });
     TALUS_TRY(parts->start(*setup));
     return std::unique_ptr<Scenario>(new Scenario(std::move(parts)));
 }

@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include "twin/kinds.hpp"
 #include "twin/section_values.hpp"
 
 namespace talus::twin {
@@ -31,10 +32,6 @@ const std::vector<TableSetup>& Setup::tables(TableKind kind) const {
     return kind == TableKind::observation ? observations : kind == TableKind::trigger ? triggers : alarms;
 }
 
-int& NextNumbers::of(TableKind kind) {
-    return kind == TableKind::observation ? observation : kind == TableKind::trigger ? trigger : alarm;
-}
-
 std::vector<params::TriggerSpec> triggers_of(const Setup& setup) {
     params::SceneSpec spec;
     put_entries(spec, TableKind::trigger, bodies_of(setup.triggers));
@@ -53,49 +50,20 @@ void take_tables(Setup& setup, NextNumbers& next, const Setup& from, const NextN
 Setup setup_of(const scene::Scene& scene, NextNumbers& next) {
     Setup setup;
     setup.material = scene.spec.material;
-    int index = 0;
-    for (const terrain::Release& release : scene.releases) {
-        setup.releases.push_back({fmt::format("release-{}", next.release++),
-                                  std::make_shared<const terrain::Release>(release), index++, true, false});
-    }
-    index = 0;
-    for (const terrain::Building& building : scene.buildings) {
-        auto body = std::make_shared<const terrain::Building>(building);
-        if (building.barrier) {
-            setup.barriers.push_back({fmt::format("barrier-{}", next.barrier++), std::move(body), true});
-        } else {
-            setup.buildings.push_back({fmt::format("building-{}", next.building++), std::move(body), index, true});
+    for_each_kind([&]<class Kind>(Kind) {
+        int index = -1;
+        for (const auto& body : Kind::in_scene(scene)) {
+            ++index;
+            if (!Kind::holds(body)) continue;
+            typename Kind::Entry entry;
+            entry.id = fmt::format("{}-{}", Kind::name, (next.*Kind::number)++);
+            entry.body = std::make_shared<const typename Kind::Body>(body);
+            entry.scene_index = index;
+            entry.as_in_scene = true;
+            Kind::measure(entry, scene.terrain);
+            (setup.*Kind::entries).push_back(std::move(entry));
         }
-        ++index;
-    }
-    index = 0;
-    for (const scene::Zone& zone : scene.zones) {
-        const double area = area_of(zone, scene.terrain.elevation().geometry);
-        setup.zones.push_back(
-            {fmt::format("zone-{}", next.zone++), std::make_shared<const scene::Zone>(zone), area, index++, true});
-    }
-    index = 0;
-    for (const scene::BedLayer& layer : scene.bed_layers) {
-        setup.beds.push_back({fmt::format("bed-{}", next.bed++), std::make_shared<const scene::BedLayer>(layer),
-                              amount_of(layer, scene.terrain), index++, true});
-    }
-    index = 0;
-    for (const terrain::Inflow& inflow : scene.inflows) {
-        setup.inflows.push_back(
-            {fmt::format("inflow-{}", next.inflow++), std::make_shared<const terrain::Inflow>(inflow), index++, true});
-    }
-    index = 0;
-    for (const terrain::Gauge& gauge : scene.gauges) {
-        setup.gauges.push_back(
-            {fmt::format("gauge-{}", next.gauge++), std::make_shared<const terrain::Gauge>(gauge), index++, true});
-    }
-    for (const auto& [kind, name] : {std::pair(TableKind::observation, "observation"),
-                                     std::pair(TableKind::trigger, "trigger"), std::pair(TableKind::alarm, "alarm")}) {
-        for (TableEntry& entry : entries_of(scene.spec, kind)) {
-            setup.tables(kind).push_back({fmt::format("{}-{}", name, next.of(kind)++),
-                                          std::make_shared<const TableEntry>(std::move(entry)), true});
-        }
-    }
+    });
     return setup;
 }
 
@@ -135,41 +103,39 @@ bool same_material(const params::MaterialSpec& a, const params::MaterialSpec& b)
     });
 }
 
-bool same_shape(const std::shared_ptr<const terrain::Release>& a, const std::shared_ptr<const terrain::Release>& b) {
-    if (a == b) return true;
-    const auto& r = a->thickness_raster;
-    const auto& s = b->thickness_raster;
+bool same_shape(const terrain::Release& a, const terrain::Release& b) {
+    const auto& r = a.thickness_raster;
+    const auto& s = b.thickness_raster;
     const auto same_value = [](float p, float q) { return p == q || (p != p && q != q); };
     const bool same_raster =
         r.has_value() == s.has_value() &&
         (!r || (r->geometry == s->geometry &&
                 std::equal(r->values.begin(), r->values.end(), s->values.begin(), s->values.end(), same_value)));
-    return beside_thickness(a->spec) == beside_thickness(b->spec) && same_raster && a->patches == b->patches;
+    return beside_thickness(a.spec) == beside_thickness(b.spec) && same_raster && a.patches == b.patches;
 }
 
-bool same_shape(const std::shared_ptr<const terrain::Building>& a, const std::shared_ptr<const terrain::Building>& b) {
+bool same_shape(const terrain::Building& a, const terrain::Building& b) {
     const auto values = [](const terrain::Building& building) -> const params::BuildingSpec& { return building; };
-    return a == b || (a->barrier == b->barrier && a->resistance == b->resistance && values(*a) == values(*b) &&
-                      a->roof_elevation == b->roof_elevation && a->part_roof_elevations == b->part_roof_elevations &&
-                      a->footprint == b->footprint);
+    return a.barrier == b.barrier && a.resistance == b.resistance && values(a) == values(b) &&
+           a.roof_elevation == b.roof_elevation && a.part_roof_elevations == b.part_roof_elevations &&
+           a.footprint == b.footprint;
 }
 
-bool same_shape(const std::shared_ptr<const scene::Zone>& a, const std::shared_ptr<const scene::Zone>& b) {
-    return a == b || (values_json(a->spec) == values_json(b->spec) && a->cells == b->cells && a->outline == b->outline);
+bool same_shape(const scene::Zone& a, const scene::Zone& b) {
+    return values_json(a.spec) == values_json(b.spec) && a.cells == b.cells && a.outline == b.outline;
 }
 
-bool same_shape(const std::shared_ptr<const scene::BedLayer>& a, const std::shared_ptr<const scene::BedLayer>& b) {
-    return a == b ||
-           (values_json(a->spec) == values_json(b->spec) && a->depth_raster == b->depth_raster && a->parts == b->parts);
+bool same_shape(const scene::BedLayer& a, const scene::BedLayer& b) {
+    return values_json(a.spec) == values_json(b.spec) && a.depth_raster == b.depth_raster && a.parts == b.parts;
 }
 
-bool same_shape(const std::shared_ptr<const terrain::Inflow>& a, const std::shared_ptr<const terrain::Inflow>& b) {
-    return a == b || (values_json(a->spec) == values_json(b->spec) && a->from == b->from && a->to == b->to &&
-                      a->area == b->area && a->hydrograph == b->hydrograph);
+bool same_shape(const terrain::Inflow& a, const terrain::Inflow& b) {
+    return values_json(a.spec) == values_json(b.spec) && a.from == b.from && a.to == b.to && a.area == b.area &&
+           a.hydrograph == b.hydrograph;
 }
 
-bool same_shape(const std::shared_ptr<const terrain::Gauge>& a, const std::shared_ptr<const terrain::Gauge>& b) {
-    return a == b || (a->at == b->at && a->name == b->name);
+bool same_shape(const terrain::Gauge& a, const terrain::Gauge& b) {
+    return a.at == b.at && a.name == b.name;
 }
 
 bool begin_alike(const Setup& a, const Setup& b) {

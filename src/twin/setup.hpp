@@ -22,77 +22,48 @@
 /// are cheap.
 namespace talus::twin {
 
-struct ReleaseSetup {
+/// Something of a setup: what it is, and where it comes from.
+template <class Of>
+struct Entry {
+    using Body = Of;
+
     std::string id;
-    std::shared_ptr<const terrain::Release> body;  ///< a drawn one has no start time (infinity)
-    int scene_index = -1;                          ///< in the scene; -1: created in the page
-    bool as_in_scene = false;                      ///< of the scene, and its body not changed
-    bool triggered = false;                        ///< in the page, regardless of its start time
+    std::shared_ptr<const Body> body;
+    int scene_index = -1;      ///< in the scene; -1: created in the page
+    bool as_in_scene = false;  ///< of the scene, and its body not changed
 };
 
-struct BarrierSetup {
-    std::string id;
-    std::shared_ptr<const terrain::Building> body;  ///< with its Building::barrier
-    bool from_scene = false;
+struct ReleaseSetup : Entry<terrain::Release> {  ///< a drawn one has no start time (infinity)
+    bool triggered = false;                      ///< in the page, regardless of its start time
+};
 
+struct BarrierSetup : Entry<terrain::Building> {  ///< with its Building::barrier
     [[nodiscard]] const params::BarrierSpec& shape() const { return *body->barrier; }
 };
 
-struct BuildingSetup {
-    std::string id;
-    std::shared_ptr<const terrain::Building> body;
-    int scene_index = -1;  ///< in the scene; -1: created in the page
-    bool as_in_scene = false;
-};
+struct BuildingSetup : Entry<terrain::Building> {};
 
 /// `area`, `amount`: of the body, on the terrain.
-struct ZoneSetup {
-    std::string id;
-    std::shared_ptr<const scene::Zone> body;
-    double area = 0;       ///< m2 in plan
-    int scene_index = -1;  ///< in the scene; -1: created in the page
-    bool as_in_scene = false;
+struct ZoneSetup : Entry<scene::Zone> {
+    double area = 0;  ///< m2 in plan
 };
 
-struct BedSetup {
-    std::string id;
-    std::shared_ptr<const scene::BedLayer> body;
+struct BedSetup : Entry<scene::BedLayer> {
     scene::BedAmount amount;
-    int scene_index = -1;
-    bool as_in_scene = false;
 };
 
-struct InflowSetup {
-    std::string id;
-    std::shared_ptr<const terrain::Inflow> body;
-    int scene_index = -1;
-    bool as_in_scene = false;
-};
-
-struct GaugeSetup {
-    std::string id;
-    std::shared_ptr<const terrain::Gauge> body;
-    int scene_index = -1;
-    bool as_in_scene = false;
-};
+using InflowSetup = Entry<terrain::Inflow>;
+using GaugeSetup = Entry<terrain::Gauge>;
 
 /// A text that people have pinned to a place; it does not affect the run.
 struct Note {
     std::string name;  ///< the text
     PlanPoint at;
 };
-
-struct NoteSetup {
-    std::string id;
-    std::shared_ptr<const Note> body;
-};
+using NoteSetup = Entry<Note>;
 
 /// An observation, a trigger or an alarm.
-struct TableSetup {
-    std::string id;
-    std::shared_ptr<const TableEntry> body;
-    bool from_scene = false;
-};
+using TableSetup = Entry<TableEntry>;
 
 struct Setup {
     params::MaterialSpec material;
@@ -114,8 +85,6 @@ struct Setup {
 struct NextNumbers {
     int release = 1, barrier = 1, building = 1, zone = 1, bed = 1, inflow = 1, gauge = 1, note = 1, observation = 1,
         trigger = 1, alarm = 1;
-
-    [[nodiscard]] int& of(TableKind kind);
 };
 
 /// The scene as it was loaded; `next` is set to follow it.
@@ -152,19 +121,17 @@ template <class Entry>
 [[nodiscard]] bool same_material(const params::MaterialSpec& a, const params::MaterialSpec& b);
 
 /// Whether two bodies are the same except for their names.
-[[nodiscard]] bool same_shape(const std::shared_ptr<const terrain::Release>& a,
-                              const std::shared_ptr<const terrain::Release>& b);
-[[nodiscard]] bool same_shape(const std::shared_ptr<const terrain::Building>& a,
-                              const std::shared_ptr<const terrain::Building>& b);
-[[nodiscard]] bool same_shape(const std::shared_ptr<const scene::Zone>& a, const std::shared_ptr<const scene::Zone>& b);
-[[nodiscard]] bool same_shape(const std::shared_ptr<const scene::BedLayer>& a,
-                              const std::shared_ptr<const scene::BedLayer>& b);
-[[nodiscard]] bool same_shape(const std::shared_ptr<const terrain::Inflow>& a,
-                              const std::shared_ptr<const terrain::Inflow>& b);
-
+[[nodiscard]] bool same_shape(const terrain::Release& a, const terrain::Release& b);
+[[nodiscard]] bool same_shape(const terrain::Building& a, const terrain::Building& b);
+[[nodiscard]] bool same_shape(const scene::Zone& a, const scene::Zone& b);
+[[nodiscard]] bool same_shape(const scene::BedLayer& a, const scene::BedLayer& b);
+[[nodiscard]] bool same_shape(const terrain::Inflow& a, const terrain::Inflow& b);
 /// The same place and the same name, under which a run has its readings.
-[[nodiscard]] bool same_shape(const std::shared_ptr<const terrain::Gauge>& a,
-                              const std::shared_ptr<const terrain::Gauge>& b);
+[[nodiscard]] bool same_shape(const terrain::Gauge& a, const terrain::Gauge& b);
+template <class Body>
+[[nodiscard]] bool same_shape(const std::shared_ptr<const Body>& a, const std::shared_ptr<const Body>& b) {
+    return a == b || same_shape(*a, *b);
+}
 
 /// Whether this holds for two lists, pair by pair.
 template <class Entry>

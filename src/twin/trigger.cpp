@@ -12,7 +12,7 @@
 #include "scene/hydrograph.hpp"
 #include "terrain/inflow.hpp"
 #include "twin/json_keys.hpp"
-#include "twin/put.hpp"
+#include "twin/kinds.hpp"
 #include "twin/scenario.hpp"
 
 namespace talus::twin {

@@ -95,7 +95,7 @@ TEST_F(OpenApi, every_route_answers_as_described) {
                           {"resistance_Npm", nullptr}},
                          {{"action", "put_building"},
                           {"name", "Barn"},
-                          {"footprint", {{824120, 825090}, {824130, 825090}, {824130, 825100}}},
+                          {"polygon", {{824120, 825090}, {824130, 825090}, {824130, 825100}}},
                           {"height_m", 4}},
                          {{"action", "put_release"},
                           {"name", "Second"},

@@ -197,7 +197,7 @@ json any_action(Dice& dice) {
          {"line", {{x, y}, {x + dice.from(-2, 2), y + dice.from(2, 8)}}},
          {"height_m", dice.from(1, 5)},
          {"thickness_m", dice.from(0.5, 2)}},
-        {{"action", "put_building"}, {"footprint", outline}, {"height_m", dice.from(1, 8)}},
+        {{"action", "put_building"}, {"polygon", outline}, {"height_m", dice.from(1, 8)}},
         {{"action", "put_release"}, {"polygon", outline}, {"thickness_m", dice.from(0.5, 2)}},
         {{"action", "trigger_release"}, {"id", any_id(dice, "release")}},
         {{"action", "put_zone"}, {"polygon", outline}, {"friction_coefficient", dice.from(0, 2)}},

@@ -44,7 +44,7 @@ TEST(DepthAveragedBeside, is_the_run_of_the_present_setup_to_the_bit) {
     act(*scenario, {{"action", "set_parameter"}, {"key", "material.friction_coefficient"}, {"value", 0.4}});
     act(*scenario, {{"action", "put_building"},
                     {"name", "hut"},
-                    {"footprint", ring(west + 60, south + 26, west + 64, south + 34)},
+                    {"polygon", ring(west + 60, south + 26, west + 64, south + 34)},
                     {"height_m", 3}});
     scene::Scene same = channel_scene();
     same.spec.material.friction_coefficient = 0.4;

@@ -133,7 +133,7 @@ TEST(Journal, refuses_what_is_none_naming_key_and_value) {
     EXPECT_THAT(error_of("/first_setup/releases", 1), HasSubstr("setup.releases = 1: must be a list"));
     EXPECT_THAT(error_of("/first_setup/releases/0/scene", 5), HasSubstr("scene = 5: must be from 0 to 0"));
     EXPECT_THAT(error_of("/first_setup/releases/0", 1), HasSubstr("setup.releases[0]: id = 1"));
-    EXPECT_THAT(error_of("/first_setup/buildings/0", {{"id", "x"}}), HasSubstr("setup.buildings[0]: footprint"));
+    EXPECT_THAT(error_of("/first_setup/buildings/0", {{"id", "x"}}), HasSubstr("setup.buildings[0]: height_m"));
     EXPECT_THAT(error_of("/first_setup/material/viscosity", 2),
                 HasSubstr("viscosity = 2: must be a number 0 to below 1"));
     EXPECT_THAT(error_of("/actions/1/setup/barriers", {{{"id", "b"}, {"name", "n"}, {"line", 3}}}),
@@ -171,7 +171,7 @@ TEST(Journal, refuses_unknown_keys_and_names_the_nearest) {
     EXPECT_THAT(error_of("/first_setup", "zone"), names("zone", "zones"));
     EXPECT_THAT(error_of("/first_setup/releases/0", "trigger"), names("trigger", "triggered"));
     EXPECT_THAT(error_of("/first_setup/buildings/0", "heigth_m"), names("heigth_m", "height_m"));
-    EXPECT_THAT(error_of("/actions/2/setup/releases/0/patches/0", "thickness"), names("thickness", "thickness_m"));
+    EXPECT_THAT(error_of("/actions/2/setup/releases/0", "thicknes_m"), names("thicknes_m", "thickness_m"));
     EXPECT_THAT(error_of("/first_setup/material", "viscosty"),
                 HasSubstr("material.viscosty: no such key; nearest known key: viscosity"));
 }

@@ -1,3 +1,5 @@
+#include <tuple>
+
 #include <gtest/gtest.h>
 
 #include "run/run.hpp"
@@ -37,7 +39,7 @@ TEST(LiveKeys, are_set_shown_written_and_read_back) {
          "barriers",
          {{"action", "put_barrier"}, {"line", {{west + 52, south + 8}, {west + 52, south + 52}}}, {"height_m", 5}}},
         {"release", "releases", {{"action", "put_release"}, {"polygon", floor}, {"thickness_m", 0.5}}},
-        {"buildings", "buildings", {{"action", "put_building"}, {"footprint", floor}, {"height_m", 5}}},
+        {"buildings", "buildings", {{"action", "put_building"}, {"polygon", floor}, {"height_m", 5}}},
         {"inflow", "inflows", {{"action", "put_inflow"}, {"polygon", floor}, {"hydrograph", {row(0), row(2)}}}},
         {"zone", "zones", {{"action", "put_zone"}, {"polygon", floor}, {"friction_coefficient", 0.3}}},
         {"bed", "beds", {{"action", "put_bed"}, {"polygon", floor}, {"depth_m", 0.5}, {"growth_rate_per_m", 0.02}}}};
@@ -136,7 +138,7 @@ TEST(LiveKeys, begin_a_new_scenario_as_a_restart_and_a_run_of_its_values) {
          "barriers",
          {{"action", "put_barrier"}, {"line", {{west + 17, south + 22}, {west + 17, south + 38}}}, {"height_m", 5}}},
         {"release", "releases", {{"action", "put_release"}, {"polygon", beside}, {"thickness_m", 1.5}}},
-        {"buildings", "buildings", {{"action", "put_building"}, {"footprint", beside}, {"height_m", 5}}},
+        {"buildings", "buildings", {{"action", "put_building"}, {"polygon", beside}, {"height_m", 5}}},
         {"inflow",
          "inflows",
          {{"action", "put_inflow"},
@@ -185,9 +187,8 @@ TEST(LiveKeys, of_structures_far_from_the_release_change_the_run_in_place) {
     const observe::Observer* begun = &edited->observer();
     act(*edited,
         {{"action", "put_barrier"}, {"line", {{west + 37, south + 22}, {west + 37, south + 38}}}, {"height_m", 2}});
-    act(*edited, {{"action", "put_building"},
-                  {"footprint", ring(west + 44, south + 27, west + 48, south + 33)},
-                  {"height_m", 5}});
+    act(*edited,
+        {{"action", "put_building"}, {"polygon", ring(west + 44, south + 27, west + 48, south + 33)}, {"height_m", 5}});
     act(*edited, {{"action", "put_barrier"}, {"id", "barrier-1"}, {"height_m", 1}});
     act(*edited, {{"action", "remove_building"}, {"id", "building-1"}});
     EXPECT_EQ(begun, &edited->observer()) << "the run was started anew";
@@ -209,11 +210,28 @@ TEST(LiveKeys, of_older_journals_are_read_to_the_same_setup) {
                     {"polygon", ring(west + 60, south + 20, west + 70, south + 40)},
                     {"direction_deg", 200.3},
                     {"hydrograph", {row(0), row(2)}}});
+    const json far = ring(west + 80, south + 20, west + 86, south + 40);
+    act(*scenario, {{"action", "put_release"}, {"polygon", far}, {"thickness_m", 0.5}});
+    act(*scenario, {{"action", "put_bed"}, {"polygon", far}, {"depth_m", 0.5}, {"growth_rate_per_m", 0.02}});
+    act(*scenario, {{"action", "put_building"},  // as older actions name its outline
+                    {"footprint", ring(west + 44, south + 27, west + 48, south + 33)},
+                    {"height_m", 5}});
     act(*scenario, {{"action", "restart"}});
     const json now = json::parse(scenario->journal_json()["first_setup"].dump());
     json old = now;
     old["barriers"][0]["height_m"] = 0;  // once beside the elevation of a level crest
     old["barriers"][0].erase("openings");
+    for (const auto& [list, parts, number, numbers] :
+         {std::tuple("releases", "patches", "thickness_m", "thicknesses_m"),
+          std::tuple("beds", "parts", "depth_m", "depths_m")}) {  // once outlines with their numbers
+        json& entry = old[list].back();
+        ASSERT_EQ(entry["polygons"].size(), 1U);
+        entry[parts] = {{{"rings", entry["polygons"][0]}, {number, entry[numbers][0]}}};
+        entry.erase("polygons");
+        entry.erase(numbers);
+    }
+    old["buildings"].back()["footprint"] = old["buildings"].back()["polygons"];
+    old["buildings"].back().erase("polygons");
     old["inflows"][0].erase("direction_deg");
     old["inflows"][0]["direction"] = 200.3 * M_PI / 180;
     const auto read = read_setup(old, scene);

@@ -230,7 +230,7 @@ TEST(Building, is_put_moved_and_removed_also_one_of_the_scene) {
     EXPECT_EQ(scenario->setup_json()["buildings"][0]["id"], "building-1");
     const std::string id = act(*scenario, {{"action", "put_building"},
                                            {"name", "shed"},
-                                           {"footprint", ring(west + 35, south + 27, west + 38, south + 33)},
+                                           {"polygon", ring(west + 35, south + 27, west + 38, south + 33)},
                                            {"height_m", 4}})
                                .created;
     EXPECT_EQ(id, "building-2");
@@ -241,7 +241,7 @@ TEST(Building, is_put_moved_and_removed_also_one_of_the_scene) {
     act(*scenario, {{"action", "remove_building"}, {"id", id}});
     act(*scenario, {{"action", "put_building"},
                     {"id", "building-1"},
-                    {"footprint", ring(west + 45, south + 24, west + 49, south + 36)}});
+                    {"polygon", ring(west + 45, south + 24, west + 49, south + 36)}});
     const json house = scenario->setup_json()["buildings"][0];
     EXPECT_EQ(house["height_m"], 6);
     EXPECT_EQ(house["from_scene"], true);
@@ -257,9 +257,9 @@ TEST(Building, is_put_moved_and_removed_also_one_of_the_scene) {
     impacts = scenario->impacts_json()["buildings"];
     ASSERT_EQ(impacts.size(), 2U);
     EXPECT_EQ(impacts[1]["hit"], true);
-    EXPECT_THAT(refusal(*scenario, {{"action", "put_building"}, {"footprint", ring(0, 0, 5, 5)}, {"height_m", 3}}),
+    EXPECT_THAT(refusal(*scenario, {{"action", "put_building"}, {"polygon", ring(0, 0, 5, 5)}, {"height_m", 3}}),
                 HasSubstr("the ground is not known"));
-    EXPECT_THAT(refusal(*scenario, {{"action", "put_building"}, {"footprint", ring(west, south, west + 9, south + 9)}}),
+    EXPECT_THAT(refusal(*scenario, {{"action", "put_building"}, {"polygon", ring(west, south, west + 9, south + 9)}}),
                 HasSubstr("height_m: missing"));
 }
 
@@ -273,13 +273,13 @@ TEST(Building, of_several_parts_with_a_courtyard_moves_as_a_whole) {
     const json before = scenario->setup_json()["buildings"][0];
     act(*scenario, {{"action", "put_building"}, {"id", "building-1"}, {"move_m", {-20, 1.5}}});
     const json after = scenario->setup_json()["buildings"][0];
-    ASSERT_EQ(after["footprint"].size(), 2U);
-    ASSERT_EQ(after["footprint"][0].size(), 2U);
+    ASSERT_EQ(after["polygons"].size(), 2U);
+    ASSERT_EQ(after["polygons"][0].size(), 2U);
     for (std::size_t part = 0; part < 2; ++part) {
-        for (std::size_t ring = 0; ring < before["footprint"][part].size(); ++ring) {
-            for (std::size_t k = 0; k < before["footprint"][part][ring].size(); ++k) {
-                const json& was = before["footprint"][part][ring][k];
-                const json& is = after["footprint"][part][ring][k];
+        for (std::size_t ring = 0; ring < before["polygons"][part].size(); ++ring) {
+            for (std::size_t k = 0; k < before["polygons"][part][ring].size(); ++k) {
+                const json& was = before["polygons"][part][ring][k];
+                const json& is = after["polygons"][part][ring][k];
                 EXPECT_DOUBLE_EQ(is[0].get<double>(), was[0].get<double>() - 20);
                 EXPECT_DOUBLE_EQ(is[1].get<double>(), was[1].get<double>() + 1.5);
             }
@@ -303,8 +303,8 @@ TEST(Building, of_several_parts_with_a_courtyard_moves_as_a_whole) {
     EXPECT_THAT(refusal(*scenario, put({{"height_m", 3}, {"move_m", {1, 1}}})), HasSubstr("needs the id"));
     EXPECT_THAT(refusal(*scenario, put({{"id", "building-1"},
                                         {"move_m", {1, 1}},
-                                        {"footprint", ring(west + 60, south + 24, west + 70, south + 36)}})),
-                HasSubstr("cannot go with footprint"));
+                                        {"polygon", ring(west + 60, south + 24, west + 70, south + 36)}})),
+                HasSubstr("cannot go with polygon"));
     EXPECT_EQ(scenario->setup_json()["buildings"][0], before);
 }
 

@@ -60,7 +60,7 @@ TEST(DrawnRelease, is_moved_as_a_whole_while_held) {
     const json before = release_of(*scenario, id);
     act(*scenario, {{"action", "put_release"}, {"id", id}, {"move_m", {7, 0}}});
     const json after = release_of(*scenario, id);
-    EXPECT_DOUBLE_EQ(after["polygons"][0][0][0].get<double>(), before["polygons"][0][0][0].get<double>() + 7);
+    EXPECT_DOUBLE_EQ(after["polygons"][0][0][0][0].get<double>(), before["polygons"][0][0][0][0].get<double>() + 7);
     EXPECT_NEAR(after["volume_m3"].get<double>(), before["volume_m3"].get<double>(), 0.1);
     expect_balance(*scenario);
     EXPECT_THAT(refusal(*scenario, {{"action", "put_release"}, {"id", id}, {"move_m", {-500, 0}}}),
@@ -175,7 +175,7 @@ TEST(DrawnRelease, makes_room_for_an_obstacle_while_it_is_held) {
     const std::string id = act(*scenario, drawn(30, 1)).created;
     const double held = number(*scenario, "volume_held_m3");
     act(*scenario, {{"action", "put_building"},
-                    {"footprint", ring(west + 32, south + 29, west + 34, south + 31)},
+                    {"polygon", ring(west + 32, south + 29, west + 34, south + 31)},
                     {"height_m", 5}});
     EXPECT_EQ(number(*scenario, "volume_held_m3"), held);
     run_until(*scenario, 0.3);

@@ -164,7 +164,7 @@ TEST(PlacedAlarms, know_what_was_drawn_in_the_page_and_are_refused_without_a_pla
     act(*scenario, {{"action", "put_building"},
                     {"name", "Shelter"},
                     {"height_m", 5},
-                    {"footprint", ring(west + 60, south + 27, west + 66, south + 33)}});
+                    {"polygon", ring(west + 60, south + 27, west + 66, south + 33)}});
     act(*scenario, put_entry("alarm", {{"name", "load"}, {"structure", "Shelter"}, {"impact_pressure_Pa", 1000}}));
     run_until(*scenario, 12);
     ASSERT_EQ(scenario->alarms().size(), 1U);

@@ -27,7 +27,7 @@ describe("differences of two scenarios", () => {
   });
   it("tells values of what both have, of neither that it was changed", () => {
     const release = (thickness_m: number, x: number): Setup["releases"][number] =>
-      ({ id: "release-1", name: "main failure", thickness_m, volume_m3: 100, polygons: [[[x, 0], [9, 0], [9, 9]]] }) as unknown as Setup["releases"][number];
+      ({ id: "release-1", name: "main failure", thickness_m, volume_m3: 100, polygons: [[[[x, 0], [9, 0], [9, 9]]]] }) as unknown as Setup["releases"][number];
     const [a, b] = [setup("A", 0.4, { releases: [release(1.5, 0)] }), setup("B", 0.4, { releases: [release(2, 0)] })];
     expect(differences(a, b, parameters)).toEqual(["main failure thickness 2.00\u202fm"]);
     expect(differences(b, a, parameters)).toEqual(["main failure thickness 1.50\u202fm"]);

@@ -11,7 +11,7 @@ import { canReshape, fewestPoints, hasOutline, itemOf, mostPoints, pointsOf, typ
 const square = (west: number, south: number, side: number): Point[] => [[west, south], [west + side, south], [west + side, south + side], [west, south + side]];
 const zone = (id: string, polygons: Point[][][]): Zone => ({ id, name: id, polygons, area_m2: 0, friction_coefficient: 0.4, turbulent_friction_mps2: null, laminar_viscosity_m2ps: null, cohesion_Pa: null,
   stem_density_pm2: 0, stem_diameter_m: 0.3, stem_drag_coefficient: 1, from_scene: false });
-const bed = (id: string, polygons: Point[][][]): Bed => ({ id, name: id, polygons, area_m2: 0, volume_m3: 120, depth_m: 1.5, law: "growth", growth_rate_per_m: 0.01,
+const bed = (id: string, polygons: Point[][][]): Bed => ({ id, name: id, polygons, depths_m: polygons.map(() => 1.5), area_m2: 0, volume_m3: 120, depth_m: 1.5, law: "growth", growth_rate_per_m: 0.01,
   critical_shear_stress_Pa: 1000, erosion_rate_mps: 0.025, erosion_depth_mpPa: 1e-4, from_scene: false, in_force: true });
 const inflow = (id: string, line: Point[] | null, polygons: Point[][][] = []): Inflow => ({ id, name: id, line, polygons, direction_deg: null, hydrograph: [...usualHydrograph], volume_m3: 200,
   from_scene: false, in_force: true });

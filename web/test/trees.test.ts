@@ -48,9 +48,9 @@ describe("trees", () => {
   it("leave houses, barriers and releases, with room for their crowns; a courtyard may have some", () => {
     const all = treesOf(setup([forest(0.05)]), flat);
     const trees = treesOf(setup([forest(0.05)], {
-      buildings: [{ footprint: [[square(5, 5, 30), square(10, 10, 20)]] }],
+      buildings: [{ polygons: [[square(5, 5, 30), square(10, 10, 20)]] }],
       barriers: [{ line: [[62, 62], [98, 62], [98, 98]], thickness_m: 2 }],
-      releases: [{ polygons: [square(5, 65, 30)] }],
+      releases: [{ polygons: [[square(5, 65, 30)]] }],
     }), flat);
     const built = ({ x, y }: { x: number; y: number }): boolean => within(x, y, 5, 5, 30) && !within(x, y, 10, 10, 20);
     expect(all.filter(built).length).toBeGreaterThan(5);

@@ -16,14 +16,14 @@ export async function testParts(run) {
   await run.check("a house of several parts with a courtyard moves as a whole, by hand and by numbers", async () => {
     await inControl(page);
     const [farm] = (await setup()).buildings;
-    assert.equal(farm.footprint.length, 2);
+    assert.equal(farm.polygons.length, 2);
     const shift = async () => {
       const [now] = (await setup()).buildings;
-      const by = [0, 1].map((axis) => now.footprint[0][0][0][axis] - farm.footprint[0][0][0][axis]);
-      now.footprint.forEach((part, p) => part.forEach((r, k) => r.forEach((point, i) => {
-        for (const axis of [0, 1]) assert.ok(Math.abs(point[axis] - farm.footprint[p][k][i][axis] - by[axis]) < 1e-6, "each corner by the same");
+      const by = [0, 1].map((axis) => now.polygons[0][0][0][axis] - farm.polygons[0][0][0][axis]);
+      now.polygons.forEach((part, p) => part.forEach((r, k) => r.forEach((point, i) => {
+        for (const axis of [0, 1]) assert.ok(Math.abs(point[axis] - farm.polygons[p][k][i][axis] - by[axis]) < 1e-6, "each corner by the same");
       })));
-      assert.equal(now.footprint[0].length, 2, "the courtyard is there");
+      assert.equal(now.polygons[0].length, 2, "the courtyard is there");
       return by;
     };
     await page.click(`[data-item="${farm.id}"]`);

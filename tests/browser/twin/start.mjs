@@ -115,7 +115,7 @@ export async function testStart(run) {
     await page.click("text=Create and open");
     await page.click("dialog .primary");
     await shows(page, () => document.querySelector(".topbar h1")?.textContent.includes("west slope") && document.querySelector(".transport"), "the new scene");
-    const ring = (await ask("scenarios/A/setup")).releases[0].polygons[0];
+    const ring = (await ask("scenarios/A/setup")).releases[0].polygons[0][0];
     for (const corner of corners.map((pixel) => ground(pixel, Math.exp(0.7) * whole))) {
       assert.ok(ring.some(([x, y]) => Math.hypot(x - corner[0], y - corner[1]) < 0.6), `${corner} is none of ${JSON.stringify(ring)}`);
     }

@@ -430,8 +430,12 @@ export interface Release extends ReleaseValues {
   id: string;
   /** For people. */
   name: string;
-  /** Outlines. */
-  polygons: Point[][];
+  /** The outer ring, then holes. */
+  polygons: Point[][][];
+  /** Of each polygon. */
+  thicknesses_m: number[];
+  /** True: the thickness is that of a raster. */
+  raster?: boolean;
   /** Of all its patches. */
   volume_m3: number;
   /** It is of the scene file; false: somebody made it here. */
@@ -472,8 +476,8 @@ export interface Building extends BuildingsValues {
   id: string;
   /** For people. */
   name: string;
-  /** Polygons: the outer ring, then holes. */
-  footprint: Point[][][];
+  /** The outer ring, then holes. */
+  polygons: Point[][][];
   /** Elevation; null: it stands on no known ground. */
   base_m: number | null;
   /** Elevation; null likewise. */
@@ -508,6 +512,10 @@ export interface Bed extends BedValues {
   polygons: Point[][][];
   /** That it covers. */
   area_m2: number;
+  /** Of each polygon. */
+  depths_m: number[];
+  /** True: the depth is that of a raster. */
+  raster?: boolean;
   /** That debris could entrain at most. */
   volume_m3: number;
   /** Null: it differs from place to place. */
@@ -1532,7 +1540,7 @@ export type Action =
   | { action: "remove_release"; id: string }
   | { action: "trigger_release"; id: string }
   | ({ action: "put_barrier"; id?: string; name?: string; line?: Point[]; openings?: WantedBarrierOpening[] } & Partial<BarrierValues>)
-  | ({ action: "put_building"; id?: string; name?: string; footprint?: Point[]; move_m?: Point } & Partial<BuildingsValues>)
+  | ({ action: "put_building"; id?: string; name?: string; polygon?: Point[]; move_m?: Point } & Partial<BuildingsValues>)
   | ({ action: "put_zone"; id?: string; name?: string; polygon?: Point[]; move_m?: Point } & Partial<ZoneValues>)
   | { action: "remove_barrier" | "remove_building" | "remove_zone"; id: string }
   | ({ action: "put_bed"; id?: string; name?: string; polygon?: Point[]; move_m?: Point } & Partial<BedValues>)

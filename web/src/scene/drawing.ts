@@ -214,7 +214,7 @@ export class Drawing {
     if (id !== null) selection = { shape: setup?.barriers.some((b) => b.id === id) ? "barrier" : "building", id };
     else if (hit && setup) {
       const [x, y] = hit.world;
-      const release = setup.releases.find((r) => r.polygons.some((ring) => inside(ring, x, y)));
+      const release = setup.releases.find((r) => r.polygons.some(([outer]) => inside(outer, x, y)));
       const { relief, metresPerPixel } = this.stage;
       selection = release ? { shape: "release", id: release.id } : groundUnder(setup, [x, y], 8 * metresPerPixel, relief.width * relief.height);
     }

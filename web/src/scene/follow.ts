@@ -88,7 +88,7 @@ export class Follow {
   /** Corners of what is released and where debris comes in. */
   private sources(): Place[] {
     const setup = this.twin.now.setup.value;
-    const corners = [...(setup?.releases ?? []).flatMap(({ polygons }) => polygons.flat()),
+    const corners = [...(setup?.releases ?? []).flatMap(({ polygons }) => polygons.flat(2)),
       ...(setup?.inflows ?? []).flatMap(({ line, polygons }) => [...(line ?? []), ...polygons.flat(2)])];
     return corners.map(([x, y]) => this.relief.local(x, y));
   }

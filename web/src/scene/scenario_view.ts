@@ -166,7 +166,7 @@ export class ScenarioView {
     for (const release of setup.releases) {
       // The thicker the release, the stronger its tint.
       const tint = 0.10 + 0.30 * Math.min(1, (release.thickness_m ?? 1) / 4);
-      areas.push({ rings: release.polygons, colour: releaseColour, opacity: tint, pattern: release.status === "held" ? "rising" : "none", gap_m: 2.5 });
+      areas.push({ rings: release.polygons.flat(), colour: releaseColour, opacity: tint, pattern: release.status === "held" ? "rising" : "none", gap_m: 2.5 });
     }
     this.drawOutlines();
     this.ground.drape(this.areas.paint(areas), this.wideAreas.paint(groundAreas(setup)));
@@ -178,7 +178,7 @@ export class ScenarioView {
   private drawOutlines(): void {
     for (const child of [...this.outlines.children]) disposeLine(child as Line2);
     for (const release of this.setup?.releases ?? []) {
-      for (const ring of release.polygons) {
+      for (const ring of release.polygons.flat()) {
         this.outlines.add(pixelLine(this.relief.drape(ring, 0.25, true), { colour: releaseColour, width_px: 2, dashed: release.status === "held" }));
       }
     }
@@ -255,7 +255,7 @@ export class ScenarioView {
       labels.push(...sectionLabels(scene.cross_sections, relief));
       for (const release of this.setup?.releases ?? []) {
         if (release.id === this.selected) continue;
-        const ring = release.polygons[0] ?? [];
+        const ring = release.polygons[0]?.[0] ?? [];
         if (ring.length === 0) continue;
         const x = ring.reduce((sum, p) => sum + p[0], 0) / ring.length;
         const y = ring.reduce((sum, p) => sum + p[1], 0) / ring.length;
@@ -268,7 +268,7 @@ export class ScenarioView {
       }
       if (this.setup) labels.push(...groundLabels(this.setup, relief, this.selected));
       for (const building of this.setup?.buildings ?? []) {
-        const ring = building.footprint[0]?.[0] ?? [];
+        const ring = building.polygons[0]?.[0] ?? [];
         if (ring.length === 0 || building.roof_m === null) continue;
         const x = ring.reduce((sum, p) => sum + p[0], 0) / ring.length;
         const y = ring.reduce((sum, p) => sum + p[1], 0) / ring.length;

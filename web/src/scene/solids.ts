@@ -24,14 +24,14 @@ function solid(geometry: BufferGeometry, colour: string, id: string, daylight: D
 
 export function houseSolid(building: Building & { base_m: number; roof_m: number }, relief: Relief, colour: string): Group {
   const [ox, oy, oz] = relief.origin;
-  const shapes = building.footprint.map((polygon) => {
+  const shapes = building.polygons.map((polygon) => {
     const [outer = [], ...holes] = polygon.map((ring) => ring.map(([x, y]) => new Vector2(x - ox, y - oy)));
     const shape = new Shape(outer);
     shape.holes = holes.map((ring) => new Path(ring));
     return shape;
   });
   // Walls extend slightly into the ground, so that no gap is visible on a slope.
-  const base = Math.min(building.base_m, ...building.footprint.flatMap((polygon) => polygon[0] ?? []).map(([x, y]) => relief.at(x, y))) - 0.5;
+  const base = Math.min(building.base_m, ...building.polygons.flatMap((polygon) => polygon[0] ?? []).map(([x, y]) => relief.at(x, y))) - 0.5;
   const geometry = new ExtrudeGeometry(shapes, { depth: building.roof_m - base, bevelEnabled: false });
   geometry.translate(0, 0, base - oz);
   return solid(geometry, colour, building.id, null);

@@ -24,7 +24,7 @@ export async function create(twin: Twin, shape: Shape, points: readonly Point[])
   const actions: Record<Shape, () => Action> = {
     release: () => ({ action: "put_release", polygon: corners, ...sizes.release }),
     barrier: () => ({ action: "put_barrier", line: corners, ...sizes.barrier }),
-    building: () => ({ action: "put_building", footprint: corners, ...sizes.building }),
+    building: () => ({ action: "put_building", polygon: corners, ...sizes.building }),
     zone: () => ({ action: "put_zone", polygon: corners, ...sizes.zone }),
     bed: () => ({ action: "put_bed", polygon: corners, ...sizes.bed }),
     inflow: () => ({ action: "put_inflow", ...(twin.inflowByLine.value ? { line: corners } : { polygon: corners }), hydrograph: rowsForServer(sizes.inflow.hydrograph) }),
@@ -42,7 +42,7 @@ export interface Change extends Omit<BarrierSet, "thickness_m" | "height_m">, Zo
 export async function change(twin: Twin, item: Item, what: Change): Promise<boolean> {
   const { points, move_m, ...sizes } = what;
   const by = move_m === undefined ? {} : { move_m: rounded([move_m])[0] };
-  const key = lineOf(item) ? "line" : item.shape === "building" ? "footprint" : "polygon";
+  const key = lineOf(item) ? "line" : "polygon";
   const outline = points === undefined ? {} : { [key]: rounded(points) };
   return (await twin.act({ action: `put_${item.shape}`, id: item.id, ...sizes, ...by, ...outline } as Action)) !== null;
 }

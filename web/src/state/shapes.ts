@@ -105,14 +105,7 @@ export function itemOf(setup: Setup | null, selection: Selection | null): Item |
 /** The line of a linear shape, null for areas. */
 export const lineOf = (item: Item): Point[] | null => (item.shape === "barrier" || item.shape === "inflow" ? item.line : null);
 /** Polygons of an area, each with its outer ring first. */
-export function partsOf(item: Item): Point[][][] {
-  switch (item.shape) {
-    case "release": return item.polygons.map((ring) => [ring]);
-    case "barrier": return [];
-    case "building": return item.footprint;
-    default: return item.polygons;
-  }
-}
+export const partsOf = (item: Item): Point[][][] => (item.shape === "barrier" ? [] : item.polygons);
 /** Corners that can be moved; a ring's repeated last corner is left out. */
 export function pointsOf(item: Item): Point[] {
   const line = lineOf(item);

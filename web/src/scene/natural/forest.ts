@@ -31,7 +31,7 @@ class Obstacles {
 
   constructor({ releases, barriers, buildings }: Planted) {
     const closed = (ring: readonly Point[]): readonly Point[] => (ring.length > 0 ? [...ring, ring[0]] : ring);
-    for (const rings of [...releases.map((r) => r.polygons), ...buildings.flatMap((b) => b.footprint)]) this.add({ lines: rings.map(closed), filled: true, half: 0 });
+    for (const rings of [...releases, ...buildings].flatMap(({ polygons }) => polygons)) this.add({ lines: rings.map(closed), filled: true, half: 0 });
     for (const { line, thickness_m } of barriers) this.add({ lines: [line], filled: false, half: thickness_m / 2 });
   }
   private static key(x: number, y: number): number {

@@ -146,7 +146,7 @@ export class Houses {
       const from = into.count;
       const roofs: (() => boolean)[] = [];
       const eaves = roof_m - oz;
-      for (const polygon of building.footprint) {
+      for (const polygon of building.polygons) {
         const rings = polygon.map((ring, k) => ringOf(ring.map(([x, y]): Point => [x - ox, y - oy]), k > 0));
         if (rings.length === 0 || rings[0].length < 3) continue;
         const base = Math.min(base_m, ...rings[0].map(([x, y]) => relief.at(x + ox, y + oy))) - 0.5 - oz;
