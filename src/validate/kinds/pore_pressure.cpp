@@ -150,7 +150,7 @@ Result<Outcome> compute(const SoilSpec& spec, const Setting& setting, const Watc
     }
     for (const double fraction : spec.creeps) {
         Rows rows(watch, outcome, fmt::format("slope, m = {:g}", fraction));
-        const Slab slab = run(fraction, 10, never);
+        const Slab slab = run(fraction, 60, never);  // the swing of the start has died away by then
         rows.add("creep_speed", slab.speed(), slab.creep_of_law());
     }
     for (const double fraction : spec.moves) {
