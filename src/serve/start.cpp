@@ -65,6 +65,7 @@ Start::~Start() {
 }
 
 void Start::close() {
+    if (!files_) return;  // closed before; the host may be gone
     stop_ = true;
     opener_.reset();
     if (made_) made_->close();
