@@ -81,12 +81,16 @@ HWY_INLINE void cross_faces(float gravity, const Row& before, int j, const Row& 
     store((flux.energy + flux.mass * spare) * passes, faces.energy, to);
 }
 
-/// What goes with the mass across faces whose fluxes are known: the pore pressure of where it comes from.
-HWY_INLINE void cross_faces_with_pore_pressure(const Row& before, int j, const Row& after, int k, Faces& faces,
-                                               int to) {
+/// What goes with the mass across faces whose fluxes are known: the pore pressure of where it comes from, and the solid
+/// fraction, if it `evolves`.
+HWY_INLINE void cross_faces_with_pore_pressure(const Row& before, int j, const Row& after, int k, bool evolves,
+                                               Faces& faces, int to) {
     const L mass = load(faces.mass, to);
     store(mass * select(mass > L(0), load(before.pore_pressure, j), load(after.pore_pressure, k)), faces.pore_pressure,
           to);
+    if (!evolves) return;
+    store(mass * select(mass > L(0), load(before.solid_fraction, j), load(after.solid_fraction, k)),
+          faces.solid_fraction, to);
 }
 
 /// The same for debris that flies.

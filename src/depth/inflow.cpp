@@ -188,7 +188,8 @@ void Inflows::Source::begin_step(Solver& solver, double step) const {
     const double rate = volume / (step * solver.geometry().cell * solver.geometry().cell);
     for (const Cell& cell : cells) {
         solver.add_inflow(cell.column, cell.row,
-                          {rate * cell.share, velocity * cell.east, velocity * cell.north, cell.from_x, cell.from_y});
+                          {rate * cell.share, velocity * cell.east, velocity * cell.north, cell.from_x, cell.from_y,
+                           inflow.spec.solid_fraction});
     }
 }
 
@@ -202,7 +203,8 @@ double Inflows::Source::end_step(Solver& solver, double from, Grid<float>& added
         double depth = came * cell.share / area;
         if (inflow.over_area()) {
             const double due = depth + cell.owed, before = solver.depth_at(cell.column, cell.row);
-            solver.inject(cell.column, cell.row, due, velocity * cell.east, velocity * cell.north);
+            solver.inject(cell.column, cell.row, due, velocity * cell.east, velocity * cell.north,
+                          inflow.spec.solid_fraction);
             depth = solver.depth_at(cell.column, cell.row) - before;
             cell.owed = due - depth;
         }

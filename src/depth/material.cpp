@@ -13,6 +13,7 @@ Material material_of(const params::MaterialSpec& material) {
                                                     : params::laminar_viscosity_of(material);
     result.samosat = sim::samosat_of(material);
     result.pore_pressure_ratio = material.pore_pressure_ratio;
+    result.soil = sim::evolving_pressure_of(material);
     result.pore_pressure_decay_time = material.pore_pressure_decay_time.value_or(0);
     return result;
 }

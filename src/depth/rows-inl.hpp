@@ -12,6 +12,7 @@
 
 #include "depth/flight.hpp"
 #include "depth/formulas.hpp"
+#include "depth/soil.hpp"
 #include "depth/stages.hpp"
 #include "sim/physics/resistance.hpp"
 #include "simd/lanes.hpp"
@@ -50,12 +51,14 @@ struct Row {
     Numbers at_rest, bed_x, bed_y;
     Numbers bed, square, lift, spare;  ///< the last three: see FaceSide, Motion
     Numbers pore_pressure;             ///< if it is carried
+    Numbers solid_fraction;            ///< if pore pressure evolves
     Numbers height, upward;            ///< of flight, and the vertical velocity, if debris flies
 };
 /// Fluxes of a row of faces, that of energy with what is spare, and what the ground's curvature presses at them.
 struct Faces {
     Numbers mass, normal, across, pressure_before, pressure_after, press, energy;
     Numbers pore_pressure;   ///< that goes with the mass, if it is carried
+    Numbers solid_fraction;  ///< the same, if pore pressure evolves
     Numbers height, upward;  ///< the same, if debris flies
 };
 struct Scratch {
@@ -71,18 +74,40 @@ struct Fastest {
     L unknown = L(0);  ///< 0, or NaN if there was one
 };
 
-/// `pore_pressure`: of the debris, if it is carried.
+/// What goes with the mass and resists.
+struct Water {
+    L pore_pressure;   ///< if it is carried
+    L solid_fraction;  ///< if pore pressure evolves
+    L speed;           ///< m/s, along the ground; the same
+};
+
+/// Friction of soil whose pore pressure evolves: (1 - lambda) tan(phi + psi), see sim/physics/pore_pressure.hpp.
+HWY_INLINE L friction_of_soil(const StageData& data, const L& friction, const L& depth, const L& stretch,
+                              const Water& water) {
+    const L zero(0), one(1), m = water.solid_fraction;
+    const L thickness = larger(depth / stretch, L(thinnest_soil));
+    const L density = L(data.soil.fluid_density) + L(data.soil.grain_density - data.soil.fluid_density) * m;
+    const L share = one - water.pore_pressure;
+    const L stress = share * density * thickness * L(data.gravity) / stretch;
+    const L psi = dilatancy_of(data.soil, m, stress, (water.speed + water.speed) / thickness);
+    const L angle = (friction + psi) / larger(L(0.1F), one - friction * psi);
+    return select(friction > zero, share * larger(zero, angle), zero);
+}
+
 HWY_INLINE Resistance<L> resistance_at(const StageData& data, std::ptrdiff_t i, const L& depth, const L& stretch,
-                                       const L& pore_pressure) {
+                                       const Water& water) {
     const auto known = [&](const float* raster, float elsewhere) HWY_ATTR {
         if (raster == nullptr) return L(elsewhere);
         const L here = L::load(raster + i);
         return select(here == here, here, L(elsewhere));
     };
     Resistance<L> r;
-    const L effective_share = data.from.pore_pressure == nullptr ? L(data.effective_share)
-                                                                 : L(1) - pore_pressure * L(data.pore_pressure_left);
-    r.friction = known(data.cover.friction, data.friction) * effective_share;
+    const L effective_share = data.from.pore_pressure == nullptr
+                                  ? L(data.effective_share)
+                                  : L(1) - water.pore_pressure * L(data.pore_pressure_left);
+    const L dry_friction = known(data.cover.friction, data.friction);
+    r.friction = data.from.solid_fraction == nullptr ? dry_friction * effective_share
+                                                     : friction_of_soil(data, dry_friction, depth, stretch, water);
     r.strength = known(data.cover.strength, data.strength);
     r.inverse_turbulence = known(data.cover.inverse_turbulence, data.inverse_turbulence);
     if (data.turbulent_thickness > 0) {
@@ -180,12 +205,16 @@ HWY_INLINE void reconstruct(const StageData& data, std::ptrdiff_t i, int cells, 
         keep(y, wall_south, wall_north, gravity * flatness * (one - flatness * bed_y * bed_y), can_flow * out_south,
              can_flow * out_north, row.y, j);
 
-        L pore_pressure = zero;
+        Water at_rest{zero, zero, zero};
         if (data.from.pore_pressure != nullptr) {
-            pore_pressure = at(data.from.pore_pressure, 0);
-            store(pore_pressure, row.pore_pressure, j);
+            at_rest.pore_pressure = at(data.from.pore_pressure, 0);
+            store(at_rest.pore_pressure, row.pore_pressure, j);
         }
-        const Resistance<L> resistance = resistance_at(data, i + j, depth, stretch, pore_pressure);
+        if (data.from.solid_fraction != nullptr) {
+            at_rest.solid_fraction = at(data.from.solid_fraction, 0);
+            store(at_rest.solid_fraction, row.solid_fraction, j);
+        }
+        const Resistance<L> resistance = resistance_at(data, i + j, depth, stretch, at_rest);
         const RestBalance<L> balance = rest_balance(rest_slope(x, inverse_cell), rest_slope(y, inverse_cell), bed_x,
                                                     bed_y, square_stretch, gravity, depth, resistance);
         const L held = opaque(select(balance.driving <= balance.resisting, one, zero));

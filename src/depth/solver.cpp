@@ -16,8 +16,6 @@ namespace {
 
 /// Share of the stable time step of a scheme whose waves may cross a cell in it. Mass leaves no cell in more than one.
 constexpr double courant_number = 0.6;
-/// Of the pore pressure that all debris refers to: then it is reckoned anew.
-constexpr double least_left = 1e-15;
 
 }  // namespace
 
@@ -42,17 +40,25 @@ Solver::Solver(const Grid<double>& bed, const Material& material, const GroundVa
     segments_.reserve(tile_count);
     fastest_.assign(tile_count, 0);
     lost_.assign(tile_count, 0);
-    if (material_.pore_pressure_ratio > 0 && material_.pore_pressure_decay_time > 0) carry_pore_pressure();
+    if (material_.soil.on) {
+        material_.pore_pressure_decay_time = 0;
+        solid_fraction_.assign(size, static_cast<float>(material_.soil.solid_fraction));
+        next_solid_fraction_ = solid_fraction_;
+    }
+    if (material_.soil.on || (material_.pore_pressure_ratio > 0 && material_.pore_pressure_decay_time > 0)) {
+        carry_pore_pressure();
+    }
     set_cover(ground);
     set_bed(bed);
 }
 
-void Solver::add(const Grid<float>& depth, std::optional<double> pore_pressure_ratio) {
-    const double ratio = pore_pressure_ratio.value_or(material_.pore_pressure_ratio);
-    if (!carries_pore_pressure() && ratio != material_.pore_pressure_ratio) carry_pore_pressure();
+void Solver::add(const Grid<float>& depth, std::optional<double> pore_pressure_ratio,
+                 std::optional<double> solid_fraction) {
+    const Start start = start_of(pore_pressure_ratio, solid_fraction);
+    if (!carries_pore_pressure() && start.pore_pressure_ratio != material_.pore_pressure_ratio) carry_pore_pressure();
     for (int row = 0; row < geometry_.rows; ++row) {
         for (int column = 0; column < geometry_.columns; ++column) {
-            if (const float more = depth.at(column, row); more > 0) mix_in(column, row, more, 0, 0, ratio);
+            if (const float more = depth.at(column, row); more > 0) mix_in(column, row, more, 0, 0, start);
         }
     }
 }
@@ -61,11 +67,11 @@ void Solver::let_fly() {
     for (std::vector<float>* array : {&height_, &climb_, &next_height_, &next_climb_}) array->assign(depth_.size(), 0);
 }
 
-void Solver::inject(int column, int row, double depth, double u, double v) {
-    mix_in(column, row, depth, u, v, material_.pore_pressure_ratio);
+void Solver::inject(int column, int row, double depth, double u, double v, std::optional<double> solid_fraction) {
+    mix_in(column, row, depth, u, v, start_of({}, solid_fraction));
 }
 
-void Solver::mix_in(int column, int row, double depth, double u, double v, double pore_pressure_ratio) {
+void Solver::mix_in(int column, int row, double depth, double u, double v, const Start& start) {
     const std::size_t i = index(column, row);
     if (unknown_[i] || !(depth > 0)) return;
     const double all = depth_[i] + depth;
@@ -81,7 +87,10 @@ void Solver::mix_in(int column, int row, double depth, double u, double v, doubl
     }
     if (carries_pore_pressure()) {
         pore_pressure_[i] = next_pore_pressure_[i] =
-            mixed(pore_pressure_[i], pore_pressure_ratio / pore_pressure_left_);
+            mixed(pore_pressure_[i], start.pore_pressure_ratio / pore_pressure_left_);
+    }
+    if (pore_pressure_evolves()) {
+        solid_fraction_[i] = next_solid_fraction_[i] = mixed(solid_fraction_[i], start.solid_fraction);
     }
     depth_[i] = next_depth_[i] = static_cast<float>(all);
     raise_line(i, all, u, v);
@@ -91,6 +100,7 @@ void Solver::mix_in(int column, int row, double depth, double u, double v, doubl
 void Solver::add_inflow(int column, int row, const CellInflow& comes) {
     if (inflow_.depth.empty()) {
         for (std::vector<float>* array : inflow_.all()) array->assign(depth_.size(), 0);
+        if (pore_pressure_evolves()) inflow_.grains.assign(depth_.size(), 0);
     }
     const std::size_t i = index(column, row);
     inflow_.depth[i] += static_cast<float>(comes.rate);
@@ -99,6 +109,9 @@ void Solver::add_inflow(int column, int row, const CellInflow& comes) {
     raise_line(i, edge + depth_[i] + comes.rate * time_step_, comes.u, comes.v);
     inflow_.momentum_x[i] += static_cast<float>(comes.rate * comes.u);
     inflow_.momentum_y[i] += static_cast<float>(comes.rate * comes.v);
+    if (pore_pressure_evolves()) {
+        inflow_.grains[i] += static_cast<float>(comes.rate * start_of({}, comes.solid_fraction).solid_fraction);
+    }
     inflow_.from_x[i] = static_cast<float>(comes.from_x);
     inflow_.from_y[i] = static_cast<float>(comes.from_y);
     changed_[tile_of(column, row)] = 1;
@@ -107,6 +120,7 @@ void Solver::add_inflow(int column, int row, const CellInflow& comes) {
 void Solver::end_inflow(int column, int row) {
     if (inflow_.depth.empty()) return;
     for (std::vector<float>* array : inflow_.all()) (*array)[index(column, row)] = 0;
+    if (!inflow_.grains.empty()) inflow_.grains[index(column, row)] = 0;
     changed_[tile_of(column, row)] = 1;
 }
 
@@ -130,27 +144,6 @@ void Solver::raise_line(std::size_t cell, double depth, double u, double v) {
     const double w = u * slope_x_[cell] + v * slope_y_[cell];
     const double head = (u * u + v * v + w * w) / (2 * material_.gravity);
     highest_line_ = std::max(highest_line_, bed_[cell] + 2 * depth + head);
-}
-
-void Solver::carry_pore_pressure() {
-    pore_pressure_.assign(depth_.size(), static_cast<float>(material_.pore_pressure_ratio));
-    next_pore_pressure_ = pore_pressure_;
-    drained_from_ = time_;
-}
-
-/// Excess pressure falls as the first mode of consolidation does (Hutchinson 1986; see sim/physics/resistance.hpp).
-void Solver::drain() {
-    const double decay = material_.pore_pressure_decay_time;
-    if (!carries_pore_pressure() || !(decay > 0)) return;
-    pore_pressure_left_ = std::exp((drained_from_ - time_) / decay);
-    if (pore_pressure_left_ > least_left) return;
-    // Debris that starts or comes in now would no longer fit into a float beside that of then.
-    const auto left = static_cast<float>(pore_pressure_left_);
-    for (std::vector<float>* array : {&pore_pressure_, &next_pore_pressure_}) {
-        for (float& pressure : *array) pressure *= left;
-    }
-    drained_from_ = time_;
-    pore_pressure_left_ = 1;
 }
 
 void Solver::find_active_tiles() {
@@ -205,6 +198,7 @@ Motion Solver::motion() {
             &v_[origin_],
             &spare_[origin_],
             carries_pore_pressure() ? &pore_pressure_[origin_] : nullptr,
+            pore_pressure_evolves() ? &solid_fraction_[origin_] : nullptr,
             flies() ? &height_[origin_] : nullptr,
             flies() ? &climb_[origin_] : nullptr};
 }
@@ -215,6 +209,7 @@ Motion Solver::next_motion() {
             &next_v_[origin_],
             &next_spare_[origin_],
             carries_pore_pressure() ? &next_pore_pressure_[origin_] : nullptr,
+            pore_pressure_evolves() ? &next_solid_fraction_[origin_] : nullptr,
             flies() ? &next_height_[origin_] : nullptr,
             flies() ? &next_climb_[origin_] : nullptr};
 }
@@ -243,12 +238,13 @@ double Solver::advance_stage(bool second) {
     const double halfway = pore_pressure_left_ * (decay > 0 ? std::exp(-time_step_ / (2 * decay)) : 1);
     data.pore_pressure_left = static_cast<float>(halfway);
     data.fresh_pore_pressure = static_cast<float>(material_.pore_pressure_ratio / std::max(halfway, 1e-30));
+    data.soil = material_.soil;
     data.cover = {pointer(friction_), pointer(inverse_turbulence_), pointer(strength_), pointer(stem_drag_),
                   pointer(viscosity_)};
     data.highest_line = static_cast<float>(highest_line_);
     data.structure = pointer(structure_);
-    data.inflow = {pointer(inflow_.depth), pointer(inflow_.momentum_x), pointer(inflow_.momentum_y),
-                   pointer(inflow_.from_x), pointer(inflow_.from_y)};
+    data.inflow = {pointer(inflow_.depth),  pointer(inflow_.momentum_x), pointer(inflow_.momentum_y),
+                   pointer(inflow_.from_x), pointer(inflow_.from_y),     pointer(inflow_.grains)};
     data.passes_east = pointer(passes_east_);
     data.passes_north = pointer(passes_north_);
 
@@ -336,6 +332,8 @@ double Solver::bytes_per_cell() const {
                                             &structure_,
                                             &pore_pressure_,
                                             &next_pore_pressure_,
+                                            &solid_fraction_,
+                                            &next_solid_fraction_,
                                             &height_,
                                             &climb_,
                                             &next_height_,
@@ -344,7 +342,8 @@ double Solver::bytes_per_cell() const {
                                             &inflow_.momentum_x,
                                             &inflow_.momentum_y,
                                             &inflow_.from_x,
-                                            &inflow_.from_y}) {
+                                            &inflow_.from_y,
+                                            &inflow_.grains}) {
         bytes += array->size() * sizeof(float);
     }
     return static_cast<double>(bytes) / static_cast<double>(geometry_.size());
@@ -375,6 +374,7 @@ std::uint64_t Solver::hash() const {
     hash.add(std::span<const float>(v_));
     hash.add(std::span<const float>(spare_));
     hash.add(std::span<const float>(pore_pressure_));
+    hash.add(std::span<const float>(solid_fraction_));
     hash.add(std::span<const float>(height_));
     hash.add(std::span<const float>(climb_));
     return hash.value();

@@ -27,6 +27,7 @@ struct Material {
     sim::Samosat samosat;                 ///< in place of `turbulent_friction`
     double pore_pressure_ratio = 0;       ///< r_u, when debris starts to move or comes in
     double pore_pressure_decay_time = 0;  ///< s; 0: constant
+    sim::EvolvingPressure soil;           ///< with which pore pressure evolves; then a ratio of 0 is hydrostatic
     double gravity = 9.80665;             ///< m/s2
 };
 
@@ -62,7 +63,8 @@ struct Face {
 /// construction.
 ///
 /// Where r_u decays, or differs between releases, debris carries it: each face moves it with its mass, from upstream,
-/// so that depth times r_u is conserved and r_u stays between the values around it.
+/// so that depth times r_u is conserved and r_u stays between the values around it. Where pore pressure evolves, debris
+/// carries its solid fraction in the same way, and both are updated at the end of a step.
 ///
 /// Elevations are rounded to the float spacing of the largest one above the lowest (0.03 mm at 500 m), so that the sum
 /// of bed and depth is exact where the level of a lake is such a number.
@@ -76,16 +78,18 @@ class Solver {
     /// Else it follows the ground.
     void let_fly();
     /// Adds debris at rest: m of vertical depth per cell of the grid. Unknown ground takes none. `pore_pressure_ratio`:
-    /// its r_u now; absent: that of the material.
-    void add(const Grid<float>& depth, std::optional<double> pore_pressure_ratio = {});
+    /// its r_u now; absent: that of the material. `solid_fraction`: the same, where pore pressure evolves.
+    void add(const Grid<float>& depth, std::optional<double> pore_pressure_ratio = {},
+             std::optional<double> solid_fraction = {});
     /// Adds debris with a velocity and the material's r_u to a cell of known ground; momenta add up.
-    void inject(int column, int row, double depth, double u, double v);
+    void inject(int column, int row, double depth, double u, double v, std::optional<double> solid_fraction = {});
     /// What comes in to a cell from the next step on, besides what comes already.
     struct CellInflow {
         double rate = 0;             ///< m of depth per s
         double u = 0, v = 0;         ///< its velocity
         int from_x = 0, from_y = 0;  ///< where its stream stands: -1 west or south, 1 east or north, 0 neither. What
                                      ///< lies shallower there is not in its way, nor that of the debris in the cell.
+        std::optional<double> solid_fraction = {};  ///< absent: that of the material
     };
     void add_inflow(int column, int row, const CellInflow& comes);
     void end_inflow(int column, int row);
@@ -133,6 +137,11 @@ class Solver {
     /// Vertical velocity of flying debris less that of a point that follows the ground below, m/s.
     [[nodiscard]] float climb_at(int column, int row) const { return flies() ? climb_[index(column, row)] : 0; }
     [[nodiscard]] bool carries_pore_pressure() const { return !pore_pressure_.empty(); }
+    [[nodiscard]] bool pore_pressure_evolves() const { return !solid_fraction_.empty(); }
+    /// Of the debris there; 0 where pore pressure does not evolve.
+    [[nodiscard]] float solid_fraction_at(int column, int row) const {
+        return pore_pressure_evolves() ? solid_fraction_[index(column, row)] : 0;
+    }
     /// r_u of the debris there, now.
     [[nodiscard]] float pore_pressure_ratio_at(int column, int row) const {
         return carries_pore_pressure() ? pore_pressure_[index(column, row)] * static_cast<float>(pore_pressure_left_)
@@ -181,8 +190,9 @@ class Solver {
         }
         // Each there, or not at all.
         for (std::vector<float>* array :
-             {&pore_pressure_, &next_pore_pressure_, &height_, &climb_, &next_height_, &next_climb_, &inflow_.depth,
-              &inflow_.momentum_x, &inflow_.momentum_y, &inflow_.from_x, &inflow_.from_y}) {
+             {&pore_pressure_, &next_pore_pressure_, &solid_fraction_, &next_solid_fraction_, &height_, &climb_,
+              &next_height_, &next_climb_, &inflow_.depth, &inflow_.momentum_x, &inflow_.momentum_y, &inflow_.from_x,
+              &inflow_.from_y, &inflow_.grains}) {
             archive(*array);
             if (!array->empty() && array->size() != cells) return fail(archive);
         }
@@ -204,7 +214,12 @@ class Solver {
         if constexpr (Archive::reading) archive.fail();
     }
     [[nodiscard]] ActiveRow active_row(const Segment& segment, int row_of_tile) const;
-    void mix_in(int column, int row, double depth, double u, double v, double pore_pressure_ratio);
+    /// What debris of a cell or of an inflow starts with.
+    struct Start {
+        double pore_pressure_ratio = 0, solid_fraction = 0;
+    };
+    [[nodiscard]] Start start_of(std::optional<double> pore_pressure_ratio, std::optional<double> solid_fraction) const;
+    void mix_in(int column, int row, double depth, double u, double v, const Start& start);
     void expect_waves_of(std::size_t cell, std::size_t tile);
     void raise_line(std::size_t cell, double depth, double u, double v);
     void carry_pore_pressure();
@@ -236,12 +251,14 @@ class Solver {
     /// r_u of the debris in a cell, as it was or would have been at drained_from_: all of it falls alike, so that cells
     /// at rest need no step. Empty: it is the same everywhere and constant.
     std::vector<float> pore_pressure_, next_pore_pressure_;
+    std::vector<float> solid_fraction_, next_solid_fraction_;       ///< empty: pore pressure does not evolve
     std::vector<float> height_, climb_, next_height_, next_climb_;  ///< see Motion; empty: debris does not fly
     double drained_from_ = 0, pore_pressure_left_ = 1;              ///< s; what is left of the pressure of then
     std::vector<float> friction_, inverse_turbulence_, strength_, stem_drag_, viscosity_,
         structure_;  ///< empty: everywhere the same
     struct {
         std::vector<float> depth, momentum_x, momentum_y, from_x, from_y;
+        std::vector<float> grains;  ///< only where pore pressure evolves
         [[nodiscard]] auto all() { return std::array{&depth, &momentum_x, &momentum_y, &from_x, &from_y}; }
     } inflow_;                                         ///< see Inflow; empty: none so far
     std::vector<Face> faces_;                          ///< that are watched

@@ -116,8 +116,8 @@ void Solver::for_each_continued_row(const F& f) const {
 
 void Solver::continue_rows(const Motion& motion) const {
     for_each_continued_row([&](std::size_t to, std::size_t from) {
-        for (float* array :
-             {motion.depth, motion.u, motion.v, motion.spare, motion.pore_pressure, motion.height, motion.climb}) {
+        for (float* array : {motion.depth, motion.u, motion.v, motion.spare, motion.pore_pressure,
+                             motion.solid_fraction, motion.height, motion.climb}) {
             if (array == nullptr) continue;
             std::copy_n(array + (from - origin_), stride_, array + (to - origin_));
         }

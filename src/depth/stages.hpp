@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <string_view>
 
+#include "sim/physics/pore_pressure.hpp"
 #include "sim/physics/samosat.hpp"
 
 namespace talus::depth {
@@ -23,6 +24,8 @@ struct Motion {
     /// scheme has taken, or below zero, has added. It goes with the mass.
     float* spare;
     float* pore_pressure = nullptr;  ///< see Solver; null: it is the same everywhere
+    /// Where pore pressure evolves, with which it is carried; else null.
+    float* solid_fraction = nullptr;
     /// Of flight: vertical height above the ground, m, and vertical velocity less that of the ground below, m/s. Null:
     /// debris does not fly.
     float *height = nullptr, *climb = nullptr;
@@ -37,6 +40,7 @@ struct Inflow {
     const float* depth;                    ///< m/s
     const float *momentum_x, *momentum_y;  ///< m2/s2
     const float *from_x, *from_y;          ///< where its stream stands: -1 west or south, 1 east or north, 0 neither
+    const float* grains;                   ///< m/s, solid fraction times depth; null: pore pressure does not evolve
 };
 
 /// One stage of Heun's method: `to` = `from` + dt F(`from`); in the second stage `to` is its mean with what it holds.
@@ -51,6 +55,7 @@ struct StageData {
     float effective_share = 1;      ///< of the normal stress, borne by the grains, where pore pressure is not carried
     float pore_pressure_left = 1;   ///< r_u over what Motion has, in the middle of the step
     float fresh_pore_pressure = 0;  ///< of what comes in
+    sim::EvolvingPressure soil{};   ///< a fresh pore pressure of 0 is hydrostatic then
     Cover cover{};
     float highest_line = 0;            ///< m: no debris is faster than by a fall from there
     const float* structure = nullptr;  ///< by cell, 1: a structure stands there; null: none anywhere

@@ -22,6 +22,7 @@ namespace {
         static_cast<std::ptrdiff_t>(segment.tile_row) * tile_edge * data.stride + segment.first_tile * tile_edge;
     const auto row_of = [&](int r) HWY_ATTR -> Row& { return scratch.rows[static_cast<std::size_t>(r & 1)]; };
     const bool carries = data.from.pore_pressure != nullptr, flies = data.from.height != nullptr;
+    const bool evolves = data.from.solid_fraction != nullptr;
     Fastest fastest;
     // Row r of the segment is r + 1 here, so that the row before it is 0.
     for (int r = 0; r < tile_edge + 2; ++r) {
@@ -29,7 +30,7 @@ namespace {
             const Row& row = row_of(r - 1);
             for (int j = 0; j <= width; j += lane_count) {
                 cross_faces(data.gravity, row, j, row, j + 1, true, scratch.x, j);
-                if (carries) cross_faces_with_pore_pressure(row, j, row, j + 1, scratch.x, j);
+                if (carries) cross_faces_with_pore_pressure(row, j, row, j + 1, evolves, scratch.x, j);
                 if (flies) cross_faces_in_flight(row, j, row, j + 1, scratch.x, j);
             }
         }
@@ -39,7 +40,7 @@ namespace {
         Faces& faces = scratch.y[static_cast<std::size_t>(r & 1)];
         for (int j = 1; j <= width; j += lane_count) {
             cross_faces(data.gravity, row_of(r - 1), j, row_of(r), j, false, faces, j);
-            if (carries) cross_faces_with_pore_pressure(row_of(r - 1), j, row_of(r), j, faces, j);
+            if (carries) cross_faces_with_pore_pressure(row_of(r - 1), j, row_of(r), j, evolves, faces, j);
             if (flies) cross_faces_in_flight(row_of(r - 1), j, row_of(r), j, faces, j);
         }
         if (r < 2) continue;

@@ -12,6 +12,7 @@
 #include "depth/flight.hpp"
 #include "depth/formulas.hpp"
 #include "depth/rows-inl.hpp"
+#include "depth/soil.hpp"
 #include "depth/stages.hpp"
 
 HWY_BEFORE_NAMESPACE();
@@ -23,36 +24,78 @@ constexpr float energy_error = 0.02F;
 /// Most that is kept spare, over kinetic energy and that of pressure: what a shock took does not come back.
 constexpr float largest_spare = 0.5F;
 
-/// Pore pressure of debris of `depth` after a stage, with `content` of it times depth: rounding must not take it beyond
-/// the values it is a mean of.
-HWY_INLINE L mixed_pore_pressure(const L& content, const L& depth, const L& own, const L& low, const L& high) {
+/// Pore pressure or solid fraction of debris of `depth` after a stage, with `content` of it times depth: rounding must
+/// not take it beyond the values it is a mean of.
+HWY_INLINE L mixed(const L& content, const L& depth, const L& own, const L& low, const L& high) {
     const L mean = smaller(larger(content / larger(depth, L(1e-12F)), low), high);
     return select(depth > L(1e-12F), mean, own);
 }
 
-/// Pore pressure of a cell after this stage alone.
-HWY_INLINE L pore_pressure_after(const StageData& data, const Scratch& scratch, int r, std::ptrdiff_t i, int j,
-                                 const L& depth, const L& new_depth) {
+/// Pore pressure, or solid fraction, of a cell after this stage alone. `raster`: of it; `fresh`: of what comes in.
+HWY_INLINE L mixed_after(const StageData& data, const Scratch& scratch, Numbers Row::*of_row, Numbers Faces::*of_faces,
+                         const float* raster, const L& fresh, int r, std::ptrdiff_t i, int j, const L& depth,
+                         const L& new_depth) {
     const Row& row = scratch.rows[static_cast<std::size_t>(r & 1)];
-    const Numbers &x = scratch.x.pore_pressure, &south = scratch.y[static_cast<std::size_t>(r & 1)].pore_pressure;
-    const Numbers& north = scratch.y[static_cast<std::size_t>((r + 1) & 1)].pore_pressure;
-    const L dt(data.time_step), per_cell = dt * L(data.inverse_cell), own = load(row.pore_pressure, j);
+    const Numbers &x = scratch.x.*of_faces, &south = scratch.y[static_cast<std::size_t>(r & 1)].*of_faces;
+    const Numbers& north = scratch.y[static_cast<std::size_t>((r + 1) & 1)].*of_faces;
+    const L dt(data.time_step), per_cell = dt * L(data.inverse_cell), own = load(row.*of_row, j);
     L content = depth * own - per_cell * (load(x, j) - load(x, j - 1) + (load(north, j) - load(south, j)));
     L low(1e30F), high(0);
-    const auto bound_by = [&](const L& brings, const L& pore_pressure) HWY_ATTR {
-        low = smaller(low, select(brings > L(0), pore_pressure, low));
-        high = larger(high, select(brings > L(0), pore_pressure, high));
+    const auto bound_by = [&](const L& brings, const L& value) HWY_ATTR {
+        low = smaller(low, select(brings > L(0), value, low));
+        high = larger(high, select(brings > L(0), value, high));
     };
     for (const std::ptrdiff_t beside : {std::ptrdiff_t{0}, std::ptrdiff_t{-1}, std::ptrdiff_t{1},
                                         -std::ptrdiff_t{data.stride}, std::ptrdiff_t{data.stride}}) {
-        bound_by(L::load(data.from.depth + i + beside), L::load(data.from.pore_pressure + i + beside));
+        bound_by(L::load(data.from.depth + i + beside), L::load(raster + i + beside));
     }
     if (data.inflow.depth != nullptr) {
-        const L comes = L::load(data.inflow.depth + i), fresh(data.fresh_pore_pressure);
+        const L comes = L::load(data.inflow.depth + i);
         content = content + dt * comes * fresh;
         bound_by(comes, fresh);
     }
-    return mixed_pore_pressure(content, new_depth, own, low, high);
+    return mixed(content, new_depth, own, low, high);
+}
+
+/// After this stage alone.
+HWY_INLINE Water water_after(const StageData& data, const Scratch& scratch, int r, std::ptrdiff_t i, int j,
+                             const L& depth, const L& new_depth) {
+    L ratio(data.fresh_pore_pressure);
+    Water water{L(0), L(0), L(0)};
+    if (data.from.solid_fraction != nullptr) {
+        L fresh(data.soil.solid_fraction);
+        if (data.inflow.grains != nullptr) {
+            fresh = L::load(data.inflow.grains + i) / larger(L::load(data.inflow.depth + i), L(1e-12F));
+        }
+        if (!(data.fresh_pore_pressure > 0)) ratio = hydrostatic_ratio(data.soil, fresh);
+        water.solid_fraction = mixed_after(data, scratch, &Row::solid_fraction, &Faces::solid_fraction,
+                                           data.from.solid_fraction, fresh, r, i, j, depth, new_depth);
+    }
+    water.pore_pressure = mixed_after(data, scratch, &Row::pore_pressure, &Faces::pore_pressure,
+                                      data.from.pore_pressure, ratio, r, i, j, depth, new_depth);
+    return water;
+}
+
+/// Soil at the end of a step in which pore pressure evolves. Where the flow stretches it thins: dh/dt = -h div u, by
+/// the velocities of the debris around.
+HWY_INLINE sim::Soil<L> evolved(const StageData& data, std::ptrdiff_t i, const Water& water, const L& depth,
+                                const L& stretch) {
+    const L zero(0), one(1), half(0.5F), two(2), dry(dry_depth);
+    const auto gradient = [&](const float* velocity, std::ptrdiff_t step) HWY_ATTR {
+        const L own = L::load(velocity + i);
+        const L wet_before = opaque(select(L::load(data.from.depth + i - step) > dry, one, zero));
+        const L wet_after = opaque(select(L::load(data.from.depth + i + step) > dry, one, zero));
+        return (wet_before * (own - L::load(velocity + i - step)) + wet_after * (L::load(velocity + i + step) - own)) *
+               L(data.inverse_cell) / larger(one, wet_before + wet_after);
+    };
+    const L spread = (gradient(data.from.u, 1) + gradient(data.from.v, data.stride)) * L(data.time_step);
+    const L thickness = larger(depth / stretch, L(thinnest_soil));
+    const L before = thickness * smaller(two, larger(half, one + spread));
+    const sim::Soil<L> after = sim::evolve(data.soil, {water.solid_fraction, water.pore_pressure, before, zero},
+                                           L(data.gravity) / stretch, thickness, water.speed, L(data.time_step));
+    const auto wet = depth > dry;
+    return {select(wet, after.solid_fraction, water.solid_fraction),
+            select(wet, after.pressure_ratio, water.pore_pressure), thickness, after.dilatancy};
 }
 
 /// What goes with the mass, per mass, after this stage alone.
@@ -139,7 +182,10 @@ HWY_INLINE void update(const StageData& data, Scratch& scratch, int r, std::ptrd
     }
 
     const bool carries = data.from.pore_pressure != nullptr;
-    L pore_pressure = carries ? pore_pressure_after(data, scratch, r, i, j, depth, new_depth) : zero;
+    const bool evolves = data.from.solid_fraction != nullptr;
+    Water water{zero, zero, zero};
+    if (carries) water = water_after(data, scratch, r, i, j, depth, new_depth);
+    if (evolves) water.speed = sqrt(square(u, v));
 
     L normal_force = larger(zero, hold), lands = zero;
     Flight<L> flight{zero, zero};
@@ -159,8 +205,8 @@ HWY_INLINE void update(const StageData& data, Scratch& scratch, int r, std::ptrd
         flight = {stays * flight.height, stays * flight.climb};
     }
     const L m_up = bed_x * m_x + bed_y * m_y, momentum = sqrt(m_x * m_x + m_y * m_y + m_up * m_up);
-    L left = resisted(resistance_at(data, i, new_depth, stretch, pore_pressure), gravity, momentum, new_depth,
-                      normal_force, stretch, dt);
+    L left = resisted(resistance_at(data, i, new_depth, stretch, water), gravity, momentum, new_depth, normal_force,
+                      stretch, dt);
     if (flies) left = select(in_air - lands > zero, momentum, left);
     energy = energy - (momentum - left) * sqrt(square_speed);
     const L moves = smaller(new_depth - L(dry_depth), left);
@@ -247,16 +293,25 @@ HWY_INLINE void update(const StageData& data, Scratch& scratch, int r, std::ptrd
         flight.climb.store(data.to.climb + i);
     }
     if (carries) {
-        change = change + difference(pore_pressure, load(row.pore_pressure, j));
+        change = change + difference(water.pore_pressure, load(row.pore_pressure, j));
         if (data.second) {
             const L old_depth = L::load(data.to.depth + i), before = L::load(data.to.pore_pressure + i);
-            const L old = select(old_depth > zero, before, pore_pressure);
-            const L content = half * (old_depth * old + new_depth * pore_pressure);
-            pore_pressure = mixed_pore_pressure(content, to_depth, pore_pressure, smaller(old, pore_pressure),
-                                                larger(old, pore_pressure));
-            change = change + difference(pore_pressure, before);
+            const auto mean = [&](const L& kept, const L& now) HWY_ATTR {
+                const L old = select(old_depth > zero, kept, now);
+                return mixed(half * (old_depth * old + new_depth * now), to_depth, now, smaller(old, now),
+                             larger(old, now));
+            };
+            water.pore_pressure = mean(before, water.pore_pressure);
+            if (evolves) {
+                water.solid_fraction = mean(L::load(data.to.solid_fraction + i), water.solid_fraction);
+                water.speed = sqrt(square(new_u, new_v));
+                const sim::Soil<L> soil = evolved(data, i, water, to_depth, stretch);
+                water = {soil.pressure_ratio, soil.solid_fraction, zero};
+            }
+            change = change + difference(water.pore_pressure, before);
         }
-        pore_pressure.store(data.to.pore_pressure + i);
+        water.pore_pressure.store(data.to.pore_pressure + i);
+        if (evolves) water.solid_fraction.store(data.to.solid_fraction + i);
     }
     store(change, scratch.change, j);
     to_depth.store(data.to.depth + i);

@@ -269,7 +269,7 @@ class GridRun {
             if (solver_.time() < release.spec.start_time - 1e-9) break;
             const double before = solver_.volume();
             const Grid<float> depth = grid_release(scene_, release, ground_);
-            solver_.add(depth, release.spec.pore_pressure_ratio);
+            solver_.add(depth, release.spec.pore_pressure_ratio, release.spec.solid_fraction);
             held_ = std::max(0.0, held_ - release.volume);
             observer_.note_release(solver_, depth, solver_.volume() - before, held_);
             stop_rule_.reset(solver_.time());

@@ -95,6 +95,11 @@ Status load_zoom(const ParsedScene& parsed, Scene& scene) {
     if (!scene.bed.empty()) {
         return Error{at + ": a zoom is refused where debris entrains its bed, whose state it does not take over"};
     }
+    if (scene.spec.material.pore_pressure == params::PorePressure::dilatancy) {
+        return Error{at +
+                     ": a zoom is refused beside material.pore_pressure = \"dilatancy\", whose solid fraction it does "
+                     "not take over"};
+    }
     TALUS_TRY(check_sources(at, area, scene));
     TALUS_TRY(refuse_for_depth_averaged(parsed, scene, "leave out the zoom"));
     scene.zoom = std::move(area);

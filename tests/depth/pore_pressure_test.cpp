@@ -86,6 +86,29 @@ TEST(PorePressure, goes_with_the_mass_and_stays_between_the_values_that_mix) {
     EXPECT_NEAR(water_pressure(solver) / before, 1, 1e-5);
 }
 
+TEST(PorePressure, stays_constant_on_ugly_ground) {
+    depth::Material material;
+    material.friction_coefficient = 0.1;
+    const auto bed = [](double x, double y) {
+        const double valley = 0.25 * std::abs(y - 30) + 0.3 * std::abs(x - 50) + std::sin(x / 4) * std::cos(y / 5);
+        const bool spike = std::lround(x) % 9 == 4 && std::lround(y) % 7 == 3, island = std::hypot(x - 50, y - 30) < 4;
+        return valley + (std::fmod(x, 20) < 10 ? 2 : 0) + (spike ? 8 : 0) + (island ? 5 : 0);
+    };
+    depth::Solver solver(grid_of(100, 60, 1, bed), material);
+    solver.add(grid_of<float>(100, 60, 1, [](double x, double y) { return std::hypot(x - 30, y - 30) < 9 ? 2 : 0; }),
+               0.7);
+    advance_until(solver, 4);
+    int wet = 0;
+    for (int row = 0; row < 60; ++row) {
+        for (int column = 0; column < 100; ++column) {
+            if (!(solver.depth_at(column, row) > 0)) continue;
+            ASSERT_EQ(solver.pore_pressure_ratio_at(column, row), 0.7F) << column << ", " << row;
+            ++wet;
+        }
+    }
+    EXPECT_GT(wet, 300);
+}
+
 TEST(PorePressure, falls_alike_in_debris_that_moves_and_in_debris_that_rests) {
     depth::Material material = draining(0.5);
     material.friction_coefficient = 2;  // holds the second heap

@@ -65,6 +65,13 @@ TEST_F(ZoomOfScene, is_refused_where_it_cannot_be) {
                 HasSubstr("a zoom is refused where debris entrains its bed"));
     EXPECT_THAT(error_of("structure = \"dam\"", "passing_share = 0.5"),
                 HasSubstr("has no nets, and \"dam\" is one; remove it, or leave out the zoom"));
+    write_zoom("structure = \"dam\"");
+    const auto evolving =
+        load_scene(folder / "scene.toml", {"material.pore_pressure=dilatancy", "material.permeability_m2=1e-11",
+                                           "material.solid_fraction=0.6", "material.critical_solid_fraction=0.62",
+                                           "material.grain_density_kgpm3=2650", "material.rest_density_kgpm3=2030"});
+    ASSERT_FALSE(evolving);
+    EXPECT_THAT(evolving.error().message, HasSubstr("a zoom is refused beside material.pore_pressure"));
 }
 
 TEST_F(ZoomOfScene, has_rules_between_its_keys) {
