@@ -128,7 +128,8 @@ class Gallery(unittest.TestCase):
         self.program("options", *arguments)
         results = json.loads((out / "results.json").read_text(encoding="utf-8"))
         as_it_is, barrier, _, moved = results["options"]
-        self.between(0.01, as_it_is["total"]["impacts"]["value"], 0.022)
+        # At most the frequency of the large events: the small ones stop above the houses.
+        self.between(0.0005, as_it_is["total"]["impacts"]["value"], 0.0021)
         self.assertLess(barrier["difference"]["deaths"]["value"], 0)
         self.assertEqual(next(item for item in moved["items"] if item["name"] == "House 38")["impacts"]["value"], 0)
         self.assertGreater(moved["cost_per_year"], 0.03 * 8e6)

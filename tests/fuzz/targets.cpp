@@ -217,7 +217,8 @@ const LiveServer& server() {
     static const LiveServer live;
     return live;
 }
-/// The whole file, and as if its hash were right.
+/// The whole file, and as if its hash were right. The corpus is what test_pack writes to TALUS_PACKS_TO; another
+/// version of the format needs it anew.
 bool packed_scene(const std::string& bytes) {
     const bool whole = read_or_refused(pack::read(std::as_bytes(std::span(bytes)), "twin.talus"));
     return read_or_refused(pack::read_content(bytes, "twin.talus")) || whole;
