@@ -103,6 +103,15 @@ TEST_F(DepthAveragedScene, notes_every_key_that_means_nothing_to_particles) {
     EXPECT_THAT(zoom->notes, testing::Each(Not(HasSubstr("not use "))));
 }
 
+TEST_F(DepthAveragedScene, takes_pore_pressure_that_evolves) {
+    write_valley(
+        "[material]\npore_pressure = \"dilatancy\"\npermeability_m2 = 1e-10\nsolid_fraction = 0.58\n"
+        "critical_solid_fraction = 0.62\n");
+    const auto scene = load_scene(folder / "scene.toml", {"solver.model=depth_averaged"});
+    ASSERT_TRUE(scene) << scene.error().message;
+    EXPECT_THAT(scene->notes, testing::Each(Not(HasSubstr("the depth-averaged model does not use"))));
+}
+
 TEST_F(DepthAveragedScene, refuses_what_the_model_lacks) {
     const std::string dam =
         fmt::format("[[barrier]]\nname = \"dam\"\nline_m = [[{0}, {1}], [{0}, {2}]]\nheight_m = 5\n", west + 150,
