@@ -123,6 +123,7 @@ run::RunVerdict judge_together(const std::vector<RunRecord>& runs) {
 
 std::vector<Measure> measures_of(const scene::Scene& scene) {
     std::vector<Measure> list;
+    list.reserve(observe::run_out_numbers.size() + 5);
     for (const observe::NamedNumber& number : observe::run_out_numbers) {
         list.push_back({std::string(number.key), number.title, number.unit});
     }
@@ -138,6 +139,7 @@ std::vector<Measure> measures_of(const scene::Scene& scene) {
 std::vector<double> measure(const scene::Scene& scene, const run::RunResult& result) {
     const observe::Observation& o = result.observation;
     std::vector<double> values;
+    values.reserve(observe::run_out_numbers.size() + 5);
     for (const observe::NamedNumber& number : observe::run_out_numbers) values.push_back(number.value(o));
     values.insert(values.end(), {reached_area(o.maps), report::greatest(o.maps.peak_depth),
                                  report::greatest(o.maps.peak_speed), result.simulated_time});

@@ -9,8 +9,6 @@
 namespace talus::publish {
 namespace {
 
-using nlohmann::json;
-
 std::string base64(std::string_view bytes) {
     std::string text(4 * ((bytes.size() + 2) / 3) + 1, '\0');
     const int size =
@@ -48,8 +46,8 @@ std::string escaped(std::string text) {
 }
 
 /// JSON that no parser of HTML can take for markup.
-std::string json_block(const json& content) {
-    return replaced(content.dump(-1, ' ', false, json::error_handler_t::replace), "<", "\\u003c");
+std::string json_block(const std::string& content) {
+    return replaced(content, "<", "\\u003c");
 }
 
 /// `scripts`, `styles`, `connects`: what a policy allows there. Pictures and the worker are made by the page itself.
@@ -102,7 +100,7 @@ std::vector<File> folder(const PageFiles& page, const Content& content) {
         {"page.js", std::string(page.script)},
         {"page.css", std::string(page.style)},
         {"tape.bin", content.tape},
-        {"manifest.json", content.about.dump(2, ' ', false, json::error_handler_t::replace) + "\n"},
+        {"manifest.json", content.about + "\n"},
     };
     if (content.engine) {
         files.push_back({"scene.bin", content.scene});

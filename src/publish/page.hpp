@@ -5,8 +5,6 @@
 #include <string_view>
 #include <vector>
 
-#include <nlohmann/json.hpp>
-
 #include "publish/engine.hpp"
 
 namespace talus::publish {
@@ -19,9 +17,9 @@ struct PageFiles {
 
 /// What a published twin holds.
 struct Content {
-    std::string title;     ///< of the scene: text of anybody
-    nlohmann::json about;  ///< what the page says of the file: Description of web/src/protocol/recorded.ts
-    std::string tape;      ///< Tape::pack()
+    std::string title;  ///< of the scene: text of anybody
+    std::string about;  ///< JSON, what the page says of the file: Description of web/src/protocol/recorded.ts
+    std::string tape;   ///< Tape::pack()
     std::optional<Engine> engine = {};
     std::string scene = {};  ///< packed, for the engine
 };

@@ -65,6 +65,7 @@ std::string file_name(const std::string& path) {
 
 std::vector<std::string> contents_of(const scene::Scene& scene, const std::vector<RecordedRun>& runs) {
     std::vector<std::string> lines;
+    lines.reserve(runs.size() + 8);
     for (const RecordedRun& run : runs) {
         lines.push_back(fmt::format("run {}: to {:.1f} s, {} frames", run.name, run.end, run.frames));
     }
@@ -111,14 +112,15 @@ Status check_twin_size(std::size_t bytes) {
                     static_cast<double>(bytes) / 1e6, static_cast<double>(largest_twin) / 1e6)};
 }
 
-json describe_twin(const scene::Scene& scene, bool engine) {
-    return {{"version", 1},
-            {"title", scene.spec.scene.title},
-            {"program", "talus"},
-            {"program_version", TALUS_VERSION},
-            {"made_at", utc_now()},
-            {"engine", engine},
-            {"sources", scene.spec.scene.sources}};
+std::string describe_twin(const scene::Scene& scene, bool engine) {
+    const json about = {{"version", 1},
+                        {"title", scene.spec.scene.title},
+                        {"program", "talus"},
+                        {"program_version", TALUS_VERSION},
+                        {"made_at", utc_now()},
+                        {"engine", engine},
+                        {"sources", scene.spec.scene.sources}};
+    return about.dump(2, ' ', false, json::error_handler_t::replace);
 }
 
 Result<Published> publish(ToPublish wanted, const SayShare& say) {

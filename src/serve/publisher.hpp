@@ -45,7 +45,7 @@ struct Published {
 /// Error: a recording of so many bytes is larger than that.
 [[nodiscard]] Status check_twin_size(std::size_t bytes);
 
-/// What the page says of its file.
-[[nodiscard]] nlohmann::json describe_twin(const scene::Scene& scene, bool engine);
+/// What the page says of its file, as JSON.
+[[nodiscard]] std::string describe_twin(const scene::Scene& scene, bool engine);
 
 }  // namespace talus::serve

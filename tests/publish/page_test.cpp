@@ -5,6 +5,7 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
 
 namespace talus::test {
 namespace {
@@ -23,7 +24,7 @@ std::size_t count(const std::string& text, const std::string& part) {
 }
 
 TEST(PublishedPage, holds_all_and_allows_no_network) {
-    const std::string html = publish::one_file(page, {.title = "Slope", .about = {{"version", 1}}, .tape = "TLST"});
+    const std::string html = publish::one_file(page, {.title = "Slope", .about = R"({"version": 1})", .tape = "TLST"});
     EXPECT_THAT(html, HasSubstr("default-src 'none'"));
     EXPECT_THAT(html, HasSubstr("connect-src 'none'"));
     EXPECT_THAT(html, HasSubstr("<script type=\"text/plain\" id=\"tape\">VExTVA==</script>"));
@@ -33,7 +34,7 @@ TEST(PublishedPage, holds_all_and_allows_no_network) {
 }
 
 TEST(PublishedPage, the_policy_names_the_script_as_it_stands_in_the_file) {
-    const std::string html = publish::one_file(page, {.title = "Slope", .about = {}, .tape = ""});
+    const std::string html = publish::one_file(page, {.title = "Slope", .about = "{}", .tape = ""});
     // printf '%s' 'const a = "<\/script>";' | openssl dgst -sha256 -binary | base64
     EXPECT_THAT(html, HasSubstr("script-src 'sha256-bLG/30R6Sis3fD27sAPd/l/wuZ5uhucw1tG23IXehVc='"));
     EXPECT_THAT(html, HasSubstr("<script type=\"module\">const a = \"<\\/script>\";</script>"));
@@ -41,7 +42,8 @@ TEST(PublishedPage, the_policy_names_the_script_as_it_stands_in_the_file) {
 
 TEST(PublishedPage, a_title_is_text) {
     const std::string title = "</title></script><img src=x onerror=alert(1)> & \"Co\"";
-    const std::string html = publish::one_file(page, {.title = title, .about = {{"title", title}}, .tape = ""});
+    const std::string html =
+        publish::one_file(page, {.title = title, .about = nlohmann::json({{"title", title}}).dump(), .tape = ""});
     EXPECT_THAT(html, HasSubstr("<title>&lt;/title&gt;&lt;/script&gt;&lt;img src=x onerror=alert(1)&gt; &amp; "
                                 "&quot;Co&quot; · talus</title>"));
     EXPECT_THAT(html, Not(HasSubstr("<img")));
@@ -50,7 +52,7 @@ TEST(PublishedPage, a_title_is_text) {
 
 TEST(PublishedPage, an_engine_comes_with_its_scene_and_may_be_compiled) {
     const Content content{
-        .title = "Slope", .about = {}, .tape = "", .engine = publish::Engine{"js", "wasm"}, .scene = "packed"};
+        .title = "Slope", .about = "{}", .tape = "", .engine = publish::Engine{"js", "wasm"}, .scene = "packed"};
     const std::string html = publish::one_file(page, content);
     EXPECT_THAT(html, HasSubstr("'wasm-unsafe-eval'"));
     for (const char* id : {"scene", "worker", "engine-script", "engine"}) {
@@ -59,7 +61,7 @@ TEST(PublishedPage, an_engine_comes_with_its_scene_and_may_be_compiled) {
 }
 
 TEST(PublishedPage, a_folder_has_what_its_page_loads) {
-    const auto files = publish::folder(page, {.title = "Slope", .about = {{"version", 1}}, .tape = "TLST"});
+    const auto files = publish::folder(page, {.title = "Slope", .about = R"({"version": 1})", .tape = "TLST"});
     const auto content = [&](const std::string& name) {
         const auto found =
             std::find_if(files.begin(), files.end(), [&](const publish::File& f) { return f.name == name; });
