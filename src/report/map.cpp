@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <memory>
 #include <optional>
 #include <utility>
 #include <vector>
@@ -248,9 +249,9 @@ namespace {
 
 /// A layer's pictures, which take most of the time of a report: for the eye, and the values for the page's script.
 struct LayerPictures {
-    std::string classes;    ///< as a URI
-    Extent extent;          ///< of the picture
-    nlohmann::json placed;  ///< the values, and where they lie
+    std::string classes;                     ///< as a URI
+    Extent extent;                           ///< of the picture
+    std::unique_ptr<nlohmann::json> placed;  ///< the values, and where they lie
 };
 
 Result<LayerPictures> pictures_of(const MapLayer& shown, const MapFrame& frame, const Classes& classes) {
@@ -263,7 +264,7 @@ Result<LayerPictures> pictures_of(const MapLayer& shown, const MapFrame& frame, 
     const Grid<float> coarse = classed ? part : crop(*shown.grid, frame.area, 500);
     const ReadOut values = read_out_of(coarse, layer.factor);
     TALUS_ASSIGN(const std::string uri, png_uri(values.image));
-    pictures.placed = placed(coarse, values, uri);
+    pictures.placed = std::make_unique<nlohmann::json>(placed(coarse, values, uri));
     return Result<LayerPictures>(std::move(pictures));
 }
 
@@ -333,7 +334,7 @@ Result<Json> map_figures(const scene::Scene& scene, const MapContent& content) {
             draw_image(picture, "layer", frame.x(e.x_min), frame.y(e.y_max), e.width() * frame.scale,
                        e.height() * frame.scale, made.classes);
             picture.close("g");
-            nlohmann::json entry = std::move(made.placed);
+            nlohmann::json entry = std::move(*made.placed);
             entry["id"] = layer.file;
             entry["name"] = shown.tab;
             entry["unit"] = layer.unit;

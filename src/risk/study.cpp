@@ -85,7 +85,8 @@ Result<Part> make_part(const StudyRequest& request, const scene::Scene& base, co
     const std::string name = part.option.empty() ? "as_it_is" : folder_name(part.option);
     part.folder =
         request.folder / fmt::format("{}_{}", number, name) / fmt::format("{}_{}", scenario, folder_name(of.name));
-    part.definition = ensemble_definition(*part.runs, part.source, *part.scene, request.scene_name);
+    part.definition = std::make_shared<nlohmann::ordered_json>(
+        ensemble_definition(*part.runs, part.source, *part.scene, request.scene_name));
     return part;
 }
 
@@ -227,7 +228,7 @@ Result<OptionOutcome> read_outcome(const Study& study, const std::string& option
     std::vector<ensemble::RunRecord> records;
     for (const Part& part : study.parts) {
         if (part.option != option) continue;
-        const auto folder = ensemble::EnsembleFolder::join(part.folder, part.definition);
+        const auto folder = ensemble::EnsembleFolder::join(part.folder, *part.definition);
         ScenarioOutcome& scenario = made.scenarios.emplace_back();
         scenario.name = study.scenarios[part.scenario].name;
         scenario.frequency = study.frequency(part.scenario);

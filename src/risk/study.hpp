@@ -28,7 +28,7 @@ struct Part {
     std::shared_ptr<const scene::Scene> scene;
     std::shared_ptr<const ensemble::PlannedRuns> runs;
     std::filesystem::path folder;
-    nlohmann::ordered_json definition;
+    std::shared_ptr<const nlohmann::ordered_json> definition;
 };
 
 struct Study {

@@ -214,6 +214,7 @@ Result<Edit> read_action(const json& action, const Setup& setup, NextNumbers& ne
                                      [&](const auto& action_and_work) { return action_and_work.first == name; });
     if (wanted == std::end(actions)) {
         std::vector<std::string> names;
+        names.reserve(actions.size());
         for (const auto& [known, work] : actions) names.emplace_back(known);
         return Error{fmt::format("action = {}: must be one of {}, undo, redo, restart, run, pause, step, set_speed",
                                  shown(json(name)), fmt::join(names, ", "))};

@@ -101,7 +101,8 @@ Result<typename Kind::Entry> read_entry(json file, const scene::Scene& scene) {
         file.erase(key);
         return value;
     };
-    if (!file.is_object() || !file.value("id", json()).is_string() || file["id"] == "") {
+    if (!file.is_object() || !file.value("id", json()).is_string() ||
+        file["id"].template get_ref<const std::string&>().empty()) {
         return not_of_a_setup("id", file);
     }
     entry.id = taken("id");

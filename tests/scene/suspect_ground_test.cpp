@@ -37,7 +37,8 @@ TEST_F(SuspectGround, an_undeclared_0_is_refused_with_the_command_that_declares_
 
 TEST_F(SuspectGround, a_low_cliff_to_0_is_asked_about) {
     const auto notes = told([](double x, double y) { return x < west + 200 ? valley(x, y) - 50 : 0; });
-    EXPECT_THAT(notes, Contains(AllOf(HasSubstr("terrain: "), HasSubstr("check these heights. If the value marks missing data"))));
+    EXPECT_THAT(notes, Contains(AllOf(HasSubstr("terrain: "),
+                                      HasSubstr("check these heights. If the value marks missing data"))));
     EXPECT_THAT(notes, Not(Contains(HasSubstr("refused"))));
 }
 

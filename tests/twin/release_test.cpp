@@ -174,9 +174,8 @@ TEST(DrawnRelease, makes_room_for_an_obstacle_while_it_is_held) {
     const auto scenario = open(channel_scene());
     const std::string id = act(*scenario, drawn(30, 1)).created;
     const double held = number(*scenario, "volume_held_m3");
-    act(*scenario, {{"action", "put_building"},
-                    {"polygon", ring(west + 32, south + 29, west + 34, south + 31)},
-                    {"height_m", 5}});
+    act(*scenario,
+        {{"action", "put_building"}, {"polygon", ring(west + 32, south + 29, west + 34, south + 31)}, {"height_m", 5}});
     EXPECT_EQ(number(*scenario, "volume_held_m3"), held);
     run_until(*scenario, 0.3);
     EXPECT_LT(number(*scenario, "max_compression"), 0.05);

@@ -2,8 +2,8 @@
 #include <cmath>
 #include <limits>
 
-/// Functions of the C library that emscripten's rounds otherwise than the one of the program: with these a result has the
-/// same bits in a page.
+/// Functions of the C library that emscripten's rounds otherwise than the one of the program: with these a result has
+/// the same bits in a page.
 
 /// Borges (2019), "An improved algorithm for hypot(a,b)", without fused operations: the square root's rounding error is
 /// found and taken out. Sizes near the ends of the range, which no length in metres has, take the plain root.
