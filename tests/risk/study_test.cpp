@@ -72,7 +72,7 @@ class StudyTest : public scene::SceneFolder {
     }
     static void run(const Study& study, std::size_t shards) {
         for (const Part& part : study.parts) {
-            const auto opened = ensemble::EnsembleFolder::open(part.folder, part.definition);
+            const auto opened = ensemble::EnsembleFolder::open(part.folder, *part.definition);
             ASSERT_TRUE(opened) << opened.error().message;
             for (std::size_t shard = 0; shard < shards; ++shard) {
                 ensemble::EnsembleOptions options;
