@@ -137,7 +137,7 @@ double seconds_of_run(const scene::Scene& scene, const InterruptWatch& watch) {
 std::size_t missing_runs(const risk::Study& study) {
     std::size_t missing = 0;
     for (const risk::Part& part : study.parts) {
-        const auto folder = ensemble::EnsembleFolder::join(part.folder, part.definition);
+        const auto folder = ensemble::EnsembleFolder::join(part.folder, *part.definition);
         std::error_code error;
         for (std::size_t run = 0; run < part.runs->count(); ++run)
             missing += fs::exists(folder.run_file(run), error) ? 0 : 1;
@@ -180,12 +180,12 @@ class StudyRunner {
         if (ranks_.first()) {
             std::error_code error;
             fs::create_directories(part.folder.parent_path(), error);  // opening says what is wrong with it
-            auto opened = ensemble::EnsembleFolder::open(part.folder, part.definition);
+            auto opened = ensemble::EnsembleFolder::open(part.folder, *part.definition);
             if (!ranks_.hear_first(opened.ok())) return fail(exit_code::bad_input, opened.error().message);
             folder.emplace(*std::move(opened));
         } else {
             if (!ranks_.hear_first(false)) return exit_code::bad_input;
-            folder.emplace(ensemble::EnsembleFolder::join(part.folder, part.definition));
+            folder.emplace(ensemble::EnsembleFolder::join(part.folder, *part.definition));
         }
         ensemble::EnsembleOptions options;
         options.shard = static_cast<std::size_t>(ranks_.rank());
