@@ -108,6 +108,7 @@ Result<ensemble::EnsemblePlan> read_arguments(const RiskArguments& arguments) {
 Result<std::vector<std::string>> wanted_options(const RiskArguments& arguments, const scene::Scene& scene) {
     if (!arguments.compare) return std::vector{scene.spec.scene.option};
     std::vector<std::string> all, names = {""};
+    all.reserve(scene.spec.options.size());
     for (const params::OptionSpec& option : scene.spec.options) all.push_back(option.name);
     if (all.empty()) return Error{scene.file.string() + ": [[option]] is missing; there is nothing to compare"};
     for (const std::string& name : arguments.options.empty() ? all : arguments.options) {
