@@ -5,7 +5,8 @@ import { Api, Refused } from "../src/protocol/api";
 import { hostEngine, type Port } from "../src/protocol/engine_host";
 import { Live } from "../src/protocol/live";
 import { Local, type HostPort } from "../src/protocol/local";
-import type { Engine, Transport } from "../src/protocol/transport";
+import type { Engine } from "../src/engine/engine";
+import type { Transport } from "../src/protocol/transport";
 
 const ports: { close(): void }[] = [];
 afterEach(() => ports.splice(0).forEach((port) => port.close()));
@@ -41,7 +42,10 @@ class Fake implements Engine {
     if (path === "/api/crash") throw new Error("the engine is out of memory: at most 2 GB");
     return answer(404, { error: "there is no such thing" });
   }
-  tick = (): void => void ++this.ticks;
+  tick(): number {
+    ++this.ticks;
+    return 0;
+  }
 }
 const tape: Transport = {
   can: { change: false, server: false },
