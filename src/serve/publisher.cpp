@@ -122,7 +122,8 @@ Result<Published> publish(ToPublish wanted, const SayShare& say) {
     TALUS_ASSIGN(made.page, published_page());
     const std::shared_ptr<const scene::Scene> scene = wanted.scene;
     const bool run = wanted.scenarios.empty();
-    const RecordOptions recording = wanted.recording;
+    RecordOptions recording = wanted.recording;
+    if (wanted.engine) recording.frame_bytes = frame_bytes_with_engine;
     if (wanted.engine) TALUS_TRY(add_engine(made.content, *scene, wanted.overrides));  // before the run: it may refuse
     Hall hall;
     TALUS_TRY(hall.open(wanted));

@@ -90,6 +90,10 @@ describe("an engine in the page", () => {
   it("that cannot open its scene says why", async () => {
     await expect(open(new Fake(), [2])).rejects.toThrow("scene: is no packed scene");
   });
+  it("whose worker does not start says so", async () => {
+    const dead: HostPort = { onmessage: null, onerror: null, postMessage: () => setTimeout(() => dead.onerror?.({} as ErrorEvent)) };
+    await expect(Local.open(dead, new Uint8Array(1), new ArrayBuffer(1), tape, () => undefined)).rejects.toThrow("did not start the engine");
+  });
   it("that fails ends in a sentence, which every later question gets too", async () => {
     const faults: string[] = [];
     const local = await open(new Fake(), [1], (sentence) => void faults.push(sentence));
