@@ -79,8 +79,15 @@ TEST_F(PageApiTest, answers_every_question_about_a_scenario) {
     EXPECT_EQ(ask("GET", "/api/scenarios/A/layers/colour").status, 404);
 }
 
+TEST_F(PageApiTest, a_run_has_no_files_but_its_journal) {
+    EXPECT_TRUE(content("GET", "/api/scenarios/A/exports").at("files").empty());
+    EXPECT_THAT(refusal("GET", "/api/scenarios/Z/exports", "", 404), HasSubstr("no scenario Z"));
+    EXPECT_TRUE(content("GET", "/api/scenarios/A/journal").contains("last"));
+}
+
 TEST_F(PageApiTest, what_needs_a_machine_is_refused_in_a_sentence) {
-    for (const char* target : {"/api/ensembles", "/api/share", "/api/scenarios/A/exports", "/", "/api/scenarios//"}) {
+    for (const char* target :
+         {"/api/ensembles", "/api/share", "/api/scenarios/A/exports/front.csv", "/", "/api/scenarios//"}) {
         EXPECT_THAT(refusal("GET", target, "", 404), HasSubstr("needs the program on a machine")) << target;
     }
     EXPECT_THAT(refusal("PUT", "/api/scenarios", "", 404), HasSubstr("PUT /api/scenarios"));
