@@ -123,8 +123,9 @@ Result<Published> publish(ToPublish wanted, const SayShare& say) {
     const std::shared_ptr<const scene::Scene> scene = wanted.scene;
     const bool run = wanted.scenarios.empty();
     RecordOptions recording = wanted.recording;
-    if (wanted.engine) recording.frame_bytes = frame_bytes_with_engine;
-    if (wanted.engine) TALUS_TRY(add_engine(made.content, *scene, wanted.overrides));  // before the run: it may refuse
+    const bool engine = wanted.engine && carries_engine();
+    if (engine) recording.frame_bytes = frame_bytes_with_engine;
+    if (engine) TALUS_TRY(add_engine(made.content, *scene, wanted.overrides));  // before the run: it may refuse
     Hall hall;
     TALUS_TRY(hall.open(wanted));
     if (run) TALUS_TRY(run_to_end(hall.session(), say));
