@@ -47,7 +47,8 @@ async function inflatedBlock(id: string, type = ""): Promise<Blob | null> {
 /** The worker of the engine: from the file itself, or from beside the page. */
 async function engineWorker(): Promise<Worker> {
   const script = await inflatedBlock("worker", "text/javascript");
-  return new Worker(script === null ? "worker.js" : URL.createObjectURL(script), { type: "module" });
+  // No module: it imports nothing, and a page from disk has no origin that a module could be asked from.
+  return new Worker(script === null ? "worker.js" : URL.createObjectURL(script));
 }
 
 async function openEngine(beside: Transport): Promise<Local> {
