@@ -52,6 +52,10 @@ set(mark ${PROJECT_SOURCE_DIR}/web/src/style/mark.svg)
 install(FILES ${mark} DESTINATION ${plugin_folder} RENAME icon.svg COMPONENT talus)
 install(FILES ${PROJECT_SOURCE_DIR}/LICENSE DESTINATION ${plugin_folder} COMPONENT archive)
 
+# The engine of published twins, for a program that was built before it; scripts/package.sh builds it first.
+install(FILES ${TALUS_ENGINE_FOLDER}/talus_engine.js ${TALUS_ENGINE_FOLDER}/talus_engine.wasm
+        DESTINATION ${CMAKE_INSTALL_DATADIR}/talus/web_engine COMPONENT talus OPTIONAL)
+
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/scenes DESTINATION ${CMAKE_INSTALL_DATADIR}/talus COMPONENT talus PATTERN "*.py" EXCLUDE)
 # What manual pages and errors call docs/..., with the links between them.
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/docs DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT documentation)

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Installs what building needs, builds the program, and makes packages for Debian and a relocatable archive in build/package:
+# Installs what building needs, builds the engine of published twins and the program, and makes packages for Debian and a relocatable archive in build/package:
 # talus, libtalus<version>, libtalus-dev, python3-talus and talus-doc as .deb, and talus-<version>-Linux.tar.gz
 #   scripts/package.sh          makes them
 #   scripts/package.sh --test   checks the packages with lintian, installs them into a fresh Debian 12 in a temporary folder, as
@@ -7,7 +7,8 @@
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
-scripts/install_packages.sh build
+scripts/install_packages.sh publish
+apps/web_engine/build.sh build/web_engine # before the program, which takes it in
 cmake --preset release
 cmake --build --preset release --target talus libtalus manuals --parallel "$(nproc)"
 rm -rf build/package
@@ -91,6 +92,8 @@ check "talus run" talus run --quiet -o /result --set solver.target_particle_coun
 check "its report" test -s /result/report.html
 check "a scene that was installed" talus scene check /usr/share/talus/scenes/sham_tseng/scene.toml
 check "neither library nor Python package came with it" sh -c '! ls /usr/lib/*/libtalus* /usr/lib/python3/dist-packages/talus 2>/dev/null'
+check "talus publish, with the engine" sh -c \
+    'talus publish --quiet -o /twin.html --set solver.target_particle_count=500 --set solver.end_time_s=5 && grep -q wasm-unsafe-eval /twin.html'
 check "the plugin for QGIS" test -s /usr/share/qgis/python/plugins/talus_processing/icon.svg
 
 # Manual pages, completion, menu entry: in what reads them.

@@ -30,17 +30,16 @@ Writes one page that opens from disk in a browser, with the scene, the recorded 
 It needs no program, no server and no network, and sends nothing: attach it to a mail, or put it on any web server.
 What it contains is printed before it is written: check that you may pass the scene's data on.
 
+  talus publish my_scene.toml -o twin.html          runs the scene, and publishes the run with the engine: a reader
+                                                    can change values, draw barriers and run it again
   talus publish my_scene.toml -o twin.html --without-engine
-                                            runs the scene, and publishes the run
-  talus publish session.json -o twin.html --without-engine
-                                            the runs of a saved live session, side by side
-  talus publish talus_out/my_scene -o twin.html --without-engine
-                                            a result of talus run: the run is computed again, to the same hash
-  talus publish my_scene.toml -o site --folder --without-engine
-                                            a folder for a web server
+                                                    a recording alone
+  talus publish session.json -o twin.html           the runs of a saved live session, side by side
+  talus publish talus_out/my_scene -o twin.html     a result of talus run: the run is computed again, to the same hash
+  talus publish my_scene.toml -o site --folder      a folder for a web server
 
-A run has as many frames as 4 MB take, most of them while debris moves; the page draws the way between two of them.
---interval takes a fixed distance.
+A run has as many frames as 4 MB take, 0.8 MB beside an engine, most of them while debris moves; the page draws the way
+between two of them. --interval takes a fixed distance.
 
 Exit codes:
     0  written
@@ -253,8 +252,9 @@ void add_publish(CLI::App& program, std::vector<Command>& commands) {
     app->add_flag("--folder", publish->options.folder, "write a folder for a web server in place of one file");
     app->add_flag("--without-engine", publish->options.without_engine,
                   "publish the recorded run alone: nothing can be changed in the page");
-    app->add_option("--interval", publish->options.recording.frame_interval,
-                    "s between frames; default: as many frames as 4 MB take, most while debris moves")
+    app->add_option(
+           "--interval", publish->options.recording.frame_interval,
+           "s between frames; default: as many as 4 MB take (0.8 MB beside an engine), most while debris moves")
         ->type_name("S")
         ->check(CLI::Range(0.1, 3600.0));
     app->add_flag("--no-files", publish->no_files, "leave out report, tables and maps as files to download");

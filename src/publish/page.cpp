@@ -6,6 +6,8 @@
 
 #include <fmt/format.h>
 
+#include "publish/tape.hpp"
+
 namespace talus::publish {
 namespace {
 
@@ -76,6 +78,15 @@ std::string block(const char* id, std::string_view text) {
     return fmt::format("<script type=\"text/plain\" id=\"{}\">{}</script>\n", id, text);
 }
 
+/// The worker with the engine's script before it: a policy that names scripts lets a worker import none. The script is
+/// a module, whose one export becomes a value of the worker; the worker is put into a block, so that their names do not
+/// meet.
+std::string worker_with(const Engine& engine, std::string_view worker) {
+    constexpr std::string_view exported = "export default Module;";
+    return fmt::format("{}\n{{\n{}\n}}\n", replaced(engine.script, exported, "globalThis.talusEngine = Module;"),
+                       worker);
+}
+
 }  // namespace
 
 std::string one_file(const PageFiles& page, const Content& content) {
@@ -86,9 +97,9 @@ std::string one_file(const PageFiles& page, const Content& content) {
     html += block("tape", base64(content.tape));
     if (content.engine) {
         html += block("scene", base64(content.scene));
-        html += block("worker", base64(page.worker));
-        html += block("engine-script", base64(content.engine->script));
-        html += block("engine", base64(content.engine->wasm));
+        // The scene is deflated already.
+        html += block("worker", base64(deflated(worker_with(*content.engine, page.worker))));
+        html += block("engine", base64(deflated(content.engine->wasm)));
     }
     html += "<script type=\"module\">" + script + "</script>\n</body>\n</html>\n";
     return html;
@@ -104,8 +115,7 @@ std::vector<File> folder(const PageFiles& page, const Content& content) {
     };
     if (content.engine) {
         files.push_back({"scene.bin", content.scene});
-        files.push_back({"worker.js", std::string(page.worker)});
-        files.push_back({"talus_engine.js", content.engine->script});
+        files.push_back({"worker.js", worker_with(*content.engine, page.worker)});
         files.push_back({"talus_engine.wasm", content.engine->wasm});
     }
     std::string html = head(content, "'self'", "'self'", "'self'");

@@ -1,58 +1,9 @@
-#include <cmath>
 #include <utility>
 
-#include "core/number_or_null.hpp"
-#include "ensemble/predict.hpp"
 #include "serve/api.hpp"
-#include "twin/table_entry.hpp"
 
 namespace talus::serve {
 namespace {
-
-using nlohmann::json;
-
-/// Field observations beside what the run so far predicts for them; `entries`: of the setup.
-json observed_json(const scene::Scene& scene, const run::RunResult& result, const json& entries) {
-    std::vector<json> ids;
-    for (const std::string& section : twin::sections_of(twin::TableKind::observation)) {
-        for (const json& entry : entries) {
-            if (entry["section"] == section) ids.push_back(entry["id"]);
-        }
-    }
-    const std::vector<ensemble::ObservedValue> observed = ensemble::observed_values(scene);
-    const std::vector<double> predicted = ensemble::predicted_values(scene, result.observation);
-    json rows = json::array();
-    for (std::size_t k = 0; k < observed.size(); ++k) {
-        const ensemble::ObservedValue& o = observed[k];
-        const bool is = o.kind == ensemble::ObservedValue::Kind::equal;
-        const bool reached = std::isfinite(predicted[k]) && !(o.unreached < 0 && predicted[k] < 0);
-        const double deviation = deviation_of(o, reached ? predicted[k] : o.unreached);
-        rows.push_back({{"id", k < ids.size() ? ids[k] : json()},
-                        {"name", o.name},
-                        {"unit", o.unit},
-                        {"observed", o.value},
-                        {"uncertainty", o.uncertainty},
-                        {"is", is                                                  ? "equal"
-                               : o.kind == ensemble::ObservedValue::Kind::at_least ? "at_least"
-                                                                                   : "below"},
-                        {"computed", reached ? json(predicted[k]) : json()},
-                        {"deviation", number_or_null<json>(deviation)}});
-    }
-    return {{"time_s", result.simulated_time}, {"rows", std::move(rows)}};
-}
-
-/// A question that needs ensembles, which a session knows nothing of.
-const session::Question& observed_question() {
-    static const session::Question question{
-        "observed", {}, true, [](Scenarios& all, int index, const Arguments&) -> session::Rest {
-            const twin::Scenario& scenario = all.at(index);
-            return [outcome = scenario.outcome(), entries = scenario.setup_json()["observations"]] {
-                const auto [scene, result] = outcome();
-                return session::reply(observed_json(scene, result, entries));
-            };
-        }};
-    return question;
-}
 
 /// Asks the scenario that a request is about, on the loop's thread; does slow work on the worker's.
 void ask(Session& session, const session::Question& question, const Request& request, const Respond& respond) {
@@ -91,7 +42,6 @@ void add_scenario_routes(Router& router, Session& session, Exports& exports) {
                     question.keys});
     };
     for (const session::Question& question : session::questions()) add(question);
-    add(observed_question());
     router.add({"POST", "/api/scenarios/{s}/actions", Role::controller,
                 [&session](const Request& request, const Respond& respond) { action(session, request, respond); }});
     router.add(

@@ -10,16 +10,13 @@
 #include <fmt/ranges.h>
 
 #include "core/try.hpp"
+#include "geo/latitude.hpp"
+#include "pack/pack.hpp"
 #include "publish/engine.hpp"
 #include "serve/library.hpp"
 #include "serve/server.hpp"
 #include "serve/worker.hpp"
 #include "session/json_text.hpp"
-
-// The scene of the engine is packed by src/pack, which a source tree without the engine does not have.
-#if __has_include("pack/pack.hpp")
-#include "pack/pack.hpp"
-#endif
 
 namespace talus::serve {
 namespace {
@@ -81,27 +78,26 @@ std::vector<std::string> contents_of(const scene::Scene& scene, const std::vecto
     return lines;
 }
 
-/// Errors: a scene too large for a page.
+/// The orthophoto is on the tape. Errors: a scene too large for a page.
 Status add_engine(publish::Content& content, const scene::Scene& scene, const std::vector<std::string>& overrides) {
-#if __has_include("pack/pack.hpp")
-    const pack::Packed packed{.scene = scene, .overrides = overrides};
-    TALUS_TRY(pack::check_size(packed));
+    const Extent e = scene.terrain.elevation().geometry.extent();
+    pack::Packed packed{
+        .scene = scene,
+        .overrides = overrides,
+        .latitude = geo::latitude_deg(scene.crs, {0.5 * (e.x_min + e.x_max), 0.5 * (e.y_min + e.y_max)})};
+    leave_out_zoom(packed.scene, "a published twin");
+    if (const Status fits = pack::check_size(packed); !fits) {
+        return Error{fmt::format("{}; or publish the recorded run alone with --without-engine", fits.error().message)};
+    }
     content.scene = pack::write(packed);
     content.engine = publish::find_engine();
-#else
-    (void)content, (void)scene, (void)overrides;
-#endif
     return {};
 }
 
 }  // namespace
 
 bool carries_engine() {
-#if __has_include("pack/pack.hpp")
     return publish::find_engine().has_value();
-#else
-    return false;
-#endif
 }
 
 Status check_twin_size(std::size_t bytes) {
@@ -128,8 +124,10 @@ Result<Published> publish(ToPublish wanted, const SayShare& say) {
     TALUS_ASSIGN(made.page, published_page());
     const std::shared_ptr<const scene::Scene> scene = wanted.scene;
     const bool run = wanted.scenarios.empty();
-    const RecordOptions recording = wanted.recording;
-    if (wanted.engine) TALUS_TRY(add_engine(made.content, *scene, wanted.overrides));  // before the run: it may refuse
+    RecordOptions recording = wanted.recording;
+    const bool engine = wanted.engine && carries_engine();
+    if (engine) recording.frame_bytes = frame_bytes_with_engine;
+    if (engine) TALUS_TRY(add_engine(made.content, *scene, wanted.overrides));  // before the run: it may refuse
     Hall hall;
     TALUS_TRY(hall.open(wanted));
     if (run) TALUS_TRY(run_to_end(hall.session(), say));

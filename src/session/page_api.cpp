@@ -94,6 +94,11 @@ PageAnswer PageApi::get(std::string_view path, const Arguments& query, const Now
     }
     const std::vector<std::string> parts = parts_of(path);
     if (parts.size() < 4 || parts[0] != "api" || parts[1] != "scenarios") return not_here("GET", path);
+    if (parts.size() == 4 && parts[3] == "exports") {
+        // The files of a run are written by the program; a page offers the journal beside them.
+        const Reply state = session_.ask(parts[2], "state");
+        return to_answer(state.outcome == Outcome::done ? reply({{"files", json::array()}}) : state);
+    }
     Arguments arguments = query;
     const Question* question = question_of(parts, arguments);
     if (question == nullptr) return not_here("GET", path);

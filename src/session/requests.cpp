@@ -8,6 +8,7 @@
 
 #include "core/try.hpp"
 #include "session/json_text.hpp"
+#include "session/observed.hpp"
 #include "twin/json_keys.hpp"
 
 namespace talus::session {
@@ -120,6 +121,7 @@ const std::vector<Question>& questions() {
         {"frame", {"time_s"}, true, frame},
         {"probe", {"x_m", "y_m"}, true, probe},
         {"figures", {}, true, figures},
+        {"observed", {}, true, observed},
         {"layers/{name}", {"time_s"}, true, layer},
     };
     return known;

@@ -1,11 +1,11 @@
 // A published twin in Chromium, opened from disk, with real clicks: nothing is asked for outside the file.
 // Usage: node publish_test.mjs OUTPUT_FOLDER TALUS. Exit code 77: skipped, the browser or its driver is missing.
 import { spawnSync } from "node:child_process";
-import { existsSync, mkdirSync, readFileSync, writeFileSync } from "node:fs";
+import { existsSync, mkdirSync, readFileSync, rmSync, statSync, writeFileSync } from "node:fs";
 import { createServer } from "node:http";
 import { extname, join, resolve } from "node:path";
-import { pathToFileURL } from "node:url";
-import { startServer } from "./twin/harness.mjs";
+import { fileURLToPath, pathToFileURL } from "node:url";
+import { clickGround, inControl, startServer, until } from "./twin/harness.mjs";
 
 const [, , folder, talus] = process.argv;
 const output = resolve(folder);
@@ -75,6 +75,74 @@ const silent = ({ asked, problems }, own) => {
   if (foreign.length > 0) throw new Error(`asked for ${foreign.map((url) => url.slice(0, 200)).join(", ")}`);
   if (problems.length > 0) throw new Error(problems.join("\n"));
 };
+/** A file of an archive that holds its files as they are. */
+function fileOf(archive, name) {
+  for (let at = 0; archive.readUInt32LE(at) === 0x04034b50;) {
+    const [size, ofName, ofRest] = [archive.readUInt32LE(at + 18), archive.readUInt16LE(at + 26), archive.readUInt16LE(at + 28)];
+    const begin = at + 30 + ofName + ofRest;
+    if (archive.toString("utf8", at + 30, at + 30 + ofName) === name) return archive.toString("utf8", begin, begin + size);
+    at = begin + size;
+  }
+  throw new Error(`${name} is not in the archive`);
+}
+/** The page computes: changes by clicks, runs, compares, and its journal gives the same hash in the program. */
+async function testEngine(opened, address) {
+  const { page } = opened;
+  const row = (name) => page.locator(`button[data-scenario=${name}]`);
+  const friction = page.locator(".field", { hasText: "riction" }).first().locator("input[type=number]");
+  const setFriction = async (value) => {
+    await friction.fill(value);
+    await friction.press("Enter");
+  };
+  const ended = (name) => until(() => row(name).textContent(), (text) => /End reached, 4\.0 s/.test(text), `the end of ${name}`);
+  await check("engine: the reader changes from the recording to computing", async () => {
+    await page.getByRole("button", { name: "Change it" }).click();
+    await page.waitForFunction(() => document.querySelector(".topbar h1, .boot[role=alert]"), null, { timeout: 120_000 });
+    await inControl(page);
+    await until(() => clock(page), (time) => time === 0, "time 0");
+    same(await page.getByRole("tab", { name: "Calibrate" }).filter({ visible: true }).count(), 0, "tabs Calibrate");
+  });
+  await check("engine: friction and a barrier are changed, and the run goes to its end", async () => {
+    await setFriction("0.35");
+    await page.click("[data-draw=barrier]");
+    await clickGround(page, 0.4, 0.6);
+    await clickGround(page, 0.55, 0.6);
+    await page.keyboard.press("Enter");
+    await until(() => page.locator("main.middle, aside").allInnerTexts(), (texts) => /Barrier 1|barrier-1/i.test(texts.join(" ")), "the barrier");
+    await page.selectOption("select[aria-label^=Speed]", "");
+    await page.click(".run");
+    await ended("A");
+  });
+  await check("engine: another scenario is computed, and both are compared", async () => {
+    await setFriction("0.2");
+    await page.locator("dialog[open]").waitFor();
+    await page.keyboard.press("Enter");  // a new scenario from the start
+    await row("B").waitFor();
+    await page.click(".run");
+    await ended("B");
+    await page.click("[data-tab=compare]");
+    await until(() => page.locator(".comparison thead th").allTextContents(), (heads) => /^A 4\.0.s$/.test(heads[1] ?? "") && /^B 4\.0.s$/.test(heads[2] ?? ""), "both in the table");
+    await page.screenshot({ path: join(output, "engine.png") });
+  });
+  await check("engine: the program replays the journal of the page to the same hash", async () => {
+    await row("A").click();
+    await page.getByRole("button", { name: "Export" }).click();
+    const [download] = await Promise.all([page.waitForEvent("download"), page.getByRole("button", { name: /^Save \d+ file/ }).click()]);
+    const text = fileOf(readFileSync(await download.path()), "journal.json");
+    const journal = JSON.parse(text);
+    same(journal.actions.map((one) => one.action.action).join(" "), "set_parameters put_barrier", "actions");
+    writeFileSync(join(output, "journal.json"), text);
+    const replayed = run("replay", join(output, "journal.json"), "--scene", fileURLToPath(new URL("../../scenes/sham_tseng/scene.toml", import.meta.url)));
+    same(replayed.status, 0, replayed.stderr);
+    if (!replayed.stdout.includes(`hash ${journal.last.hash}`)) throw new Error(`${replayed.stdout}, the page has ${journal.last.hash}`);
+  });
+  await check("engine: no request leaves the page, and the console is silent", async () => silent(opened, (url) => url.split("#")[0] === address || url.startsWith("blob:") || url.startsWith("data:")));
+  await check("engine: a page and its engine have at most 4 MB", async () => {
+    const { size } = statSync(fileURLToPath(address));
+    if (size > 4e6) throw new Error(`${size} bytes`);
+  });
+  await opened.close();
+}
 /** Of a picture of the view, as a PNG: an empty one is small. */
 const pictureBytes = async (page) => (await page.screenshot({ clip: await page.locator(".view canvas").boundingBox() })).length;
 
@@ -210,10 +278,11 @@ try {
     }
   });
 
-  const engine = run("publish", "-o", join(output, "engine.html"), "--force", ...small);
+  const computing = join(output, "engine.html");
+  rmSync(computing, { force: true });  // of a former program
+  const engine = run("publish", "-o", computing, ...small, "--set", "solver.end_time_s=4");
   if (engine.status === 0) {
-    // With an engine the page computes: see the checks there.
-    console.log("the program has an engine");
+    await testEngine(await open(pathToFileURL(computing).href, { width: 1200, height: 800 }), pathToFileURL(computing).href);
   } else {
     console.log("SKIPPED the engine in the page: this program was built without it");
     await check("without an engine, a twin with one is refused in one sentence, and nothing is written", async () => {

@@ -55,9 +55,21 @@ TEST(PublishedPage, an_engine_comes_with_its_scene_and_may_be_compiled) {
         .title = "Slope", .about = "{}", .tape = "", .engine = publish::Engine{"js", "wasm"}, .scene = "packed"};
     const std::string html = publish::one_file(page, content);
     EXPECT_THAT(html, HasSubstr("'wasm-unsafe-eval'"));
-    for (const char* id : {"scene", "worker", "engine-script", "engine"}) {
+    for (const char* id : {"scene", "worker", "engine"}) {
         EXPECT_THAT(html, HasSubstr("<script type=\"text/plain\" id=\"" + std::string(id) + "\">"));
     }
+}
+
+TEST(PublishedPage, the_engines_script_stands_before_the_worker_and_exports_nothing) {
+    const Content content{.title = "Slope",
+                          .about = {},
+                          .tape = "",
+                          .engine = publish::Engine{"var Module = 1;\nexport default Module;\n", "wasm"}};
+    const auto files = publish::folder(page, content);
+    const auto worker =
+        std::find_if(files.begin(), files.end(), [](const publish::File& f) { return f.name == "worker.js"; });
+    ASSERT_NE(worker, files.end());
+    EXPECT_EQ(worker->bytes, "var Module = 1;\nglobalThis.talusEngine = Module;\n\n{\nonmessage = 1;\n}\n");
 }
 
 TEST(PublishedPage, a_folder_has_what_its_page_loads) {

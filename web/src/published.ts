@@ -24,24 +24,37 @@ interface About { version: number; title: string; program: string; program_versi
 
 const textOf = (id: string): string | null => document.getElementById(id)?.textContent ?? null;
 
-/** Of a block of the file, in base64; otherwise of a file beside the page. */
-async function bytesOf(id: string, file: string): Promise<Uint8Array> {
-  const text = textOf(id);
-  if (text === null) return new Uint8Array(await (await fetch(file)).arrayBuffer());
-  document.getElementById(id)?.remove();
-  return Uint8Array.from(atob(text), (c) => c.charCodeAt(0));
+/** Of a block of the file, in base64. Its text goes: it is not needed twice. */
+function blockOf(id: string): Uint8Array | null {
+  const block = document.getElementById(id);
+  if (block === null) return null;
+  const text = atob(block.textContent ?? "");
+  block.remove();
+  return Uint8Array.from(text, (c) => c.charCodeAt(0));
+}
+/** A block as it is, otherwise a file beside the page. */
+const bytesOf = async (id: string, file: string): Promise<Uint8Array> =>
+  blockOf(id) ?? new Uint8Array(await (await fetch(file)).arrayBuffer());
+
+/** A deflated block, inflated; null: the page has none. */
+async function inflatedBlock(id: string, type = ""): Promise<Blob | null> {
+  const packed = blockOf(id);
+  if (packed === null) return null;
+  const stream = new Blob([packed as BlobPart]).stream().pipeThrough(new DecompressionStream("deflate"));
+  return new Blob([await new Response(stream).arrayBuffer()], { type });
 }
 
 /** The worker of the engine: from the file itself, or from beside the page. */
 async function engineWorker(): Promise<Worker> {
-  const address = textOf("worker") === null ? "worker.js" : URL.createObjectURL(new Blob([await bytesOf("worker", "") as BlobPart], { type: "text/javascript" }));
-  return new Worker(address, { type: "module" });
+  const script = await inflatedBlock("worker", "text/javascript");
+  // No module: it imports nothing, and a page from disk has no origin that a module could be asked from.
+  return new Worker(script === null ? "worker.js" : URL.createObjectURL(script));
 }
 
 async function openEngine(beside: Transport): Promise<Local> {
-  const [scene, wasm] = await Promise.all([bytesOf("scene", "scene.bin"), bytesOf("engine", "talus_engine.wasm")]);
-  const worker = await engineWorker();
-  return Local.open(worker as unknown as HostPort, scene, wasm.buffer as ArrayBuffer, beside, (sentence) =>
+  const [scene, inFile, worker] = await Promise.all([bytesOf("scene", "scene.bin"), inflatedBlock("engine"), engineWorker()]);
+  const wasm = await (inFile ?? await fetch("talus_engine.wasm")).arrayBuffer();
+  return Local.open(worker as unknown as HostPort, scene, wasm, beside, (sentence) =>
     openDialog(dialog("The computation has ended", h("p", { class: "hint" }, sentence), h("p", { class: "hint" }, "Reload the page to begin again; what was not exported is lost."))));
 }
 /** To the engine, or back to the recording: another page, since neither knows the other's session. */

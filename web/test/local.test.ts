@@ -5,7 +5,8 @@ import { Api, Refused } from "../src/protocol/api";
 import { hostEngine, type Port } from "../src/protocol/engine_host";
 import { Live } from "../src/protocol/live";
 import { Local, type HostPort } from "../src/protocol/local";
-import type { Engine, Transport } from "../src/protocol/transport";
+import type { Engine } from "../src/engine/engine";
+import type { Transport } from "../src/protocol/transport";
 
 const ports: { close(): void }[] = [];
 afterEach(() => ports.splice(0).forEach((port) => port.close()));
@@ -41,7 +42,10 @@ class Fake implements Engine {
     if (path === "/api/crash") throw new Error("the engine is out of memory: at most 2 GB");
     return answer(404, { error: "there is no such thing" });
   }
-  tick = (): void => void ++this.ticks;
+  tick(): number {
+    ++this.ticks;
+    return 0;
+  }
 }
 const tape: Transport = {
   can: { change: false, server: false },
@@ -85,6 +89,10 @@ describe("an engine in the page", () => {
   });
   it("that cannot open its scene says why", async () => {
     await expect(open(new Fake(), [2])).rejects.toThrow("scene: is no packed scene");
+  });
+  it("whose worker does not start says so", async () => {
+    const dead: HostPort = { onmessage: null, onerror: null, postMessage: () => setTimeout(() => dead.onerror?.({} as ErrorEvent)) };
+    await expect(Local.open(dead, new Uint8Array(1), new ArrayBuffer(1), tape, () => undefined)).rejects.toThrow("did not start the engine");
   });
   it("that fails ends in a sentence, which every later question gets too", async () => {
     const faults: string[] = [];

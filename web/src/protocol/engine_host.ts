@@ -1,5 +1,5 @@
 // The worker's side of an engine in the page: opens it, answers, and lets the session go on between the page's messages.
-import type { Engine } from "./transport";
+import type { Engine } from "../engine/engine";
 
 /** To the worker. */
 export type ToHost =
@@ -23,7 +23,7 @@ export interface Port {
 
 /** Of computing without looking at the page's messages: a click must not wait longer for its answer. */
 const budget_ms = 20;
-/** Between two looks at what is due, while nothing is. */
+/** Between two looks at what is due, at most: a message may have made something due. */
 const pause_ms = 15;
 
 const sentenceOf = (error: unknown): string => (error instanceof Error && error.message !== "" ? error.message : "The engine of this page has failed; reload the page.");
@@ -44,9 +44,8 @@ export function hostEngine(port: Port, load: (wasm: ArrayBuffer) => Promise<Engi
   };
   const goOn = (): void => guarded(() => {
     if (engine === null) return;
-    const begun = performance.now();
-    engine.tick(budget_ms);
-    setTimeout(goOn, performance.now() - begun > budget_ms / 4 ? 0 : pause_ms);
+    const wait_ms = engine.tick(budget_ms);
+    setTimeout(goOn, wait_ms < 0 ? pause_ms : Math.min(wait_ms, pause_ms));
   });
 
   const open = async (scene: Uint8Array, wasm: ArrayBuffer): Promise<void> => {

@@ -6,6 +6,8 @@ import type { Possible, Transport, Wire, WireEvents } from "./transport";
 export interface HostPort {
   postMessage(message: ToHost, transfer: Transferable[]): void;
   onmessage: ((event: MessageEvent) => void) | null;
+  /** Of a worker whose script did not run. */
+  onerror?: ((event: ErrorEvent) => void) | null;
 }
 interface Asked { resolve(response: Response): void; reject(why: Error): void }
 
@@ -29,6 +31,7 @@ export class Local implements Transport {
           resolve(local);
         } else if (message.kind === "fault") reject(new Error(message.sentence));
       };
+      port.onerror = () => reject(new Error("This browser did not start the engine; a newer one may, and the recording needs none."));
       port.postMessage({ kind: "open", scene, wasm }, [scene.buffer, wasm]);
     });
   }

@@ -35,17 +35,3 @@ export interface Transport {
   /** `secret`: of a person who was here before a break. */
   connect(name: string, secret: string | null, events: WireEvents): Wire;
 }
-
-/** The solver and a session of it, compiled to WebAssembly (apps/web_engine). One caller, on the worker's thread. */
-export interface Engine {
-  /** Throws an Error with a sentence. */
-  open(packed: Uint8Array): { hash: string };
-  join(name: string): number;
-  leave(client: number): void;
-  /** What the page sends on its WebSocket. */
-  message(client: number, text: string): void;
-  request(method: string, path: string, body: Uint8Array | string): { status: number; type: string; body: Uint8Array };
-  /** Does what is due, for about that long. */
-  tick(budget_ms: number): void;
-  onSend: (client: number, message: string | ArrayBuffer) => void;
-}

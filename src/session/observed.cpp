@@ -1,0 +1,56 @@
+#include "session/observed.hpp"
+
+#include <cmath>
+#include <utility>
+#include <vector>
+
+#include "core/number_or_null.hpp"
+#include "ensemble/predict.hpp"
+#include "twin/table_entry.hpp"
+
+namespace talus::session {
+namespace {
+
+using nlohmann::json;
+
+/// `entries`: of the setup.
+json observed_json(const scene::Scene& scene, const run::RunResult& result, const json& entries) {
+    std::vector<json> ids;
+    for (const std::string& section : twin::sections_of(twin::TableKind::observation)) {
+        for (const json& entry : entries) {
+            if (entry["section"] == section) ids.push_back(entry["id"]);
+        }
+    }
+    const std::vector<ensemble::ObservedValue> observed = ensemble::observed_values(scene);
+    const std::vector<double> predicted = ensemble::predicted_values(scene, result.observation);
+    json rows = json::array();
+    for (std::size_t k = 0; k < observed.size(); ++k) {
+        const ensemble::ObservedValue& o = observed[k];
+        const bool is = o.kind == ensemble::ObservedValue::Kind::equal;
+        const bool reached = std::isfinite(predicted[k]) && !(o.unreached < 0 && predicted[k] < 0);
+        const double deviation = deviation_of(o, reached ? predicted[k] : o.unreached);
+        rows.push_back({{"id", k < ids.size() ? ids[k] : json()},
+                        {"name", o.name},
+                        {"unit", o.unit},
+                        {"observed", o.value},
+                        {"uncertainty", o.uncertainty},
+                        {"is", is                                                  ? "equal"
+                               : o.kind == ensemble::ObservedValue::Kind::at_least ? "at_least"
+                                                                                   : "below"},
+                        {"computed", reached ? json(predicted[k]) : json()},
+                        {"deviation", number_or_null<json>(deviation)}});
+    }
+    return {{"time_s", result.simulated_time}, {"rows", std::move(rows)}};
+}
+
+}  // namespace
+
+Rest observed(Scenarios& all, int index, const Arguments& /*arguments*/) {
+    const twin::Scenario& scenario = all.at(index);
+    return [outcome = scenario.outcome(), entries = scenario.setup_json()["observations"]] {
+        const auto [scene, result] = outcome();
+        return reply(observed_json(scene, result, entries));
+    };
+}
+
+}  // namespace talus::session
