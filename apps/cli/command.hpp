@@ -31,6 +31,7 @@ void add_bundle(CLI::App& program, std::vector<Command>& commands);
 void add_validate(CLI::App& program, std::vector<Command>& commands);
 void add_ensemble(CLI::App& program, std::vector<Command>& commands);
 void add_calibrate(CLI::App& program, std::vector<Command>& commands);
+void add_design(CLI::App& program, std::vector<Command>& commands);
 void add_risk(CLI::App& program, std::vector<Command>& commands);  ///< and options
 void add_bench(CLI::App& program, std::vector<Command>& commands);
 void add_manual(CLI::App& program, std::vector<Command>& commands);  ///< and completion; they describe all the others

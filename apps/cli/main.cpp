@@ -99,7 +99,7 @@ int talus_main(int argc, char** argv) {
 
     std::vector<Command> commands;
     for (const auto add : {add_start, add_run, add_compare, add_serve, add_replay, add_publish, add_scene, add_bundle,
-                           add_validate, add_ensemble, add_calibrate, add_risk, add_bench, add_manual}) {
+                           add_validate, add_ensemble, add_calibrate, add_design, add_risk, add_bench, add_manual}) {
         add(app, commands);
     }
     app.footer(program_help);  // last: commands made after it would inherit it

@@ -20,9 +20,7 @@
 #include "risk/risk_products.hpp"
 #include "risk/study.hpp"
 #include "risk_text.hpp"
-#include "run/cost.hpp"
-#include "run/run_scene.hpp"
-#include "scene/particle_spacing.hpp"
+#include "run_cost.hpp"
 #include "scene_input.hpp"
 #include "thread_options.hpp"
 #include "throttled_progress.hpp"
@@ -119,19 +117,6 @@ Result<std::vector<std::string>> wanted_options(const RiskArguments& arguments, 
         if (std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
     }
     return names;
-}
-
-/// What the runs that are missing cost, s of one thread each; NaN: it could not be tried.
-double seconds_of_run(const scene::Scene& scene, const InterruptWatch& watch) {
-    if (scene.spec.solver.model == params::ModelChoice::particles) {
-        const double spacing = particle_spacing(scene);
-        const auto rehearsal = run::rehearse(scene, spacing, watch.stop_requested());
-        return rehearsal ? cost_of(scene, *rehearsal, spacing).wall_time : std::nan("");
-    }
-    run::RunOptions options;
-    options.stop_requested = &watch.stop_requested();
-    const auto tried = run_scene(scene, options);
-    return tried ? tried->wall_time : std::nan("");
 }
 
 /// Runs of the study that no earlier call has made.

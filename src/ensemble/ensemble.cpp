@@ -80,8 +80,13 @@ Result<RunRecord> Workers::recorded(std::size_t run) const {
     const auto file = folder_.run_file(run);
     TALUS_ASSIGN(RunRecord record,
                  read_run_record(file, folder_.plan(), run, run < options_.verified ? Verify::header : Verify::bytes));
-    if (record.values == runs_.at(run).values) return record;
-    return Error{fmt::format("{}: is of other values than this program chooses", file.string())};
+    if (record.values != runs_.at(run).values) {
+        return Error{fmt::format("{}: is of other values than this program chooses", file.string())};
+    }
+    if (options_.kept && record.complete() && !options_.kept(run)) {
+        return Error{fmt::format("{}: what belongs to it is missing or damaged", file.string())};
+    }
+    return record;
 }
 
 /// Runs of other processes are none of this one's work.
@@ -124,9 +129,11 @@ std::optional<std::pair<RunRecord, observe::HazardMaps>> Workers::compute(std::s
     RunRecord& record = made.first;
     record.run = run;
     record.values = planned.values;
-    const Result<scene::Scene> scene = [&] {
+    const Result<scene::Scene> scene = [&]() -> Result<scene::Scene> {
         const std::lock_guard lock(loading_);
-        return scene::load_scene(source_.file, overrides);
+        TALUS_ASSIGN(scene::Scene loaded, scene::load_scene(source_.file, overrides));
+        if (options_.prepare) TALUS_TRY(options_.prepare(loaded));
+        return loaded;
     }();
     if (!scene) {
         record.fault = scene.error().message;
@@ -158,6 +165,12 @@ std::optional<std::pair<RunRecord, observe::HazardMaps>> Workers::compute(std::s
         const Status written = result->fault ? products::write_fault(*result->fault, kept) : Status();
         if (!written) record.fault += "; nothing more is kept of it: " + written.error().message;
         return made;
+    }
+    if (options_.keep) {
+        if (const Status kept = options_.keep(run, *result); !kept) {
+            record.fault = kept.error().message;
+            return made;
+        }
     }
     record.results = measure(*scene, *result);
     record.verdict = judge(*result);

@@ -8,8 +8,10 @@
 #include "core/result.hpp"
 #include "ensemble/ensemble_folder.hpp"
 #include "ensemble/plan.hpp"
+#include "run/run_result.hpp"
 #include "run/time_left.hpp"
 #include "run/variants.hpp"
+#include "scene/scene.hpp"
 
 namespace talus::ensemble {
 
@@ -31,6 +33,13 @@ struct EnsembleOptions {
     std::function<void(const RunRecord&)> on_run = {};              ///< likewise, when a run of this call is recorded
     std::size_t verified = 0;  ///< records of runs before this one were verified or written by this process
     std::function<void(const std::string&)> on_refused = {};  ///< why a record is not used and its run made again
+    std::function<Status(scene::Scene&)> prepare =
+        {};  ///< changes every scene once it is loaded; the definition says how
+    /// Keeps more of a complete run than its record, before that is written; an error is a fault of the run. From any
+    /// of the runs' threads.
+    std::function<Status(std::size_t run, const run::RunResult&)> keep = {};
+    /// Whether what an earlier call kept of a run is there; if not the run is made again.
+    std::function<bool(std::size_t run)> kept = {};
     run::WorkClock* clock = nullptr;  ///< where these runs are part of more: the clock of all, a run per number
 };
 

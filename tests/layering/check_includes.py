@@ -27,6 +27,7 @@ BELOW = {
     "stats": ["core"],
     "ensemble": ["core", "params", "terrain", "simd", "sim", "depth", "geo", "observe", "scene", "run", "report", "products", "stats"],
     "calibrate": ["core", "params", "terrain", "simd", "sim", "depth", "geo", "observe", "scene", "run", "report", "products", "stats", "ensemble"],
+    "design": ["core", "params", "terrain", "simd", "sim", "depth", "geo", "observe", "scene", "run", "report", "products", "stats", "ensemble"],
     "risk": ["core", "params", "terrain", "simd", "sim", "depth", "geo", "observe", "scene", "run", "report", "products", "stats", "ensemble"],
     "validate": ["core", "params", "terrain", "simd", "sim", "depth", "geo", "observe", "scene", "run", "report", "products"],
     "bench": ["core", "params", "terrain", "simd", "sim", "depth", "geo", "observe", "scene", "run", "report", "products"],
@@ -35,9 +36,9 @@ BELOW = {
                 "twin"],
     "publish": ["core"],
     "serve": ["core", "params", "terrain", "simd", "sim", "depth", "geo", "observe", "scene", "run", "report", "products", "stats", "ensemble",
-              "calibrate", "risk", "validate", "twin", "session", "publish", "pack"],
+              "calibrate", "design", "risk", "validate", "twin", "session", "publish", "pack"],
     "apps": ["core", "params", "terrain", "simd", "sim", "depth", "geo", "observe", "scene", "run", "report", "products", "stats", "ensemble",
-             "calibrate", "risk", "validate", "bench", "twin", "session", "publish", "serve", "pack"],
+             "calibrate", "design", "risk", "validate", "bench", "twin", "session", "publish", "serve", "pack"],
 }
 INCLUDE = re.compile(r'^\s*#\s*include\s*([<"])([^>"]+)[>"]')
 NAMESPACE = re.compile(r"^namespace (talus\b[\w:]*) \{")

@@ -1,0 +1,257 @@
+#include "design/design.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+#include <thread>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "command.hpp"
+#include "core/number_or_null.hpp"
+#include "core/try.hpp"
+#include "ensemble/ensemble.hpp"
+#include "ensemble_text.hpp"
+#include "exit_code.hpp"
+#include "interrupt.hpp"
+#include "run_cost.hpp"
+#include "scene_input.hpp"
+#include "thread_options.hpp"
+#include "throttled_progress.hpp"
+
+namespace talus::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct DesignArguments {
+    std::string scene, output, plan, barrier;
+    std::string of = "runs", confirm = "none";
+    std::vector<std::string> factors, lines, overrides;
+    std::optional<std::string> design;
+    std::optional<std::size_t> runs;
+    std::optional<std::uint64_t> seed;
+    double share = 0.05, low = 1, high = 10, step = 0.5;
+    std::optional<double> boulder, slope;
+    std::string data;
+    ThreadOptions threads;
+    bool retry_failed = false, quiet = false, json = false;
+};
+
+constexpr const char* help = R"(
+Finds the least height of a barrier of the scene for which at most a stated share of the runs of an ensemble, or of
+their volume, passes: over the crest, through openings or round an end. Every height has the same draws. With it come
+what the barrier holds, run-up and filling, velocity and thickness of the flow that comes to its line without it, and
+force and pressure from the runs beside the loads of published methods. Factors are those of talus ensemble:
+  talus design valley/scene.toml --barrier "gully barrier" --vary material.friction_coefficient=0.15:0.3 --runs 32
+Other lines for the same barrier, as places in the scene's reference system or a file with a line:
+  --line "upper=824235,825765 824263,825755" --line lower=lower.geojson
+
+The same command resumes where an earlier one stopped. docs/design.md has an example.
+
+Exit codes: as talus run; 3: too few runs were complete.
+)";
+
+Result<design::DesignRequest> read_arguments(const DesignArguments& arguments, const SceneInput& source) {
+    design::DesignRequest request;
+    ensemble::EnsemblePlan& plan = request.plan;
+    plan.runs = 32;
+    if (!arguments.plan.empty()) {
+        TALUS_ASSIGN(plan, ensemble::read_plan(arguments.plan));
+        if (plan.fast_runs > 0) {
+            return Error{arguments.plan + ": ensemble.fast_runs is refused; set solver.model and --confirm instead"};
+        }
+    }
+    for (const std::string& factor : arguments.factors) TALUS_TRY(add_factor(plan, factor));
+    if (arguments.design) {
+        const auto design = stats::design_of(*arguments.design);
+        if (!design) {
+            return Error{fmt::format("--design {} is refused; it must be latin_hypercube, monte_carlo or sobol",
+                                     *arguments.design)};
+        }
+        plan.design = *design;
+    }
+    using enum stats::DesignKind;
+    if (plan.design != latin_hypercube && plan.design != monte_carlo && plan.design != sobol) {
+        return Error{
+            fmt::format("design {} is refused; its points are no sample: latin_hypercube, monte_carlo or sobol",
+                        design_name(plan.design))};
+    }
+    plan.runs = arguments.runs.value_or(plan.runs);
+    plan.seed = arguments.seed.value_or(plan.seed);
+    request.source = source.source;
+    request.scene_name = source.name;
+    request.folder =
+        arguments.output.empty() ? default_output(source.short_name + "_design") : fs::path(arguments.output);
+    request.barrier = arguments.barrier;
+    request.lines = arguments.lines;
+    request.share = arguments.share;
+    request.of_volume = arguments.of == "volume";
+    request.low = arguments.low;
+    request.high = arguments.high;
+    request.step = arguments.step;
+    request.confirm = arguments.confirm == "particles";
+    request.boulder_diameter = arguments.boulder;
+    request.deposition_slope = arguments.slope;
+    return request;
+}
+
+/// Says what is to be computed at most, and how long that takes, before it starts.
+void tell_cost(const design::Design& planned, const DesignArguments& arguments, const SharedThreads& shared,
+               const InterruptWatch& watch, ThrottledProgress& reporter) {
+    const std::size_t missing = planned.missing_runs();
+    if (arguments.quiet || missing == 0) return;
+    const double wall = seconds_of_run(*planned.scene, watch) * static_cast<double>(missing) / shared.runs_at_once;
+    if (arguments.json) {
+        const nlohmann::ordered_json json = {{"event", "cost"},
+                                             {"runs_at_most", planned.most_runs()},
+                                             {"runs_missing", missing},
+                                             {"wall_time_s", number_or_null<nlohmann::ordered_json>(wall)}};
+        (void)print(json.dump() + "\n");
+        return;
+    }
+    reporter.note(fmt::format(
+        "at most {} runs to make: {} for each of {} heights and without the barrier, on {} line{}{}{}", missing,
+        planned.runs->count(), planned.most_runs() / planned.lines.size() / planned.runs->count() - 1,
+        planned.lines.size(), planned.lines.size() == 1 ? "" : "s", left_text("; at most about {} in all", wall),
+        planned.request.confirm ? "; then up to 5 with particles on each line" : ""));
+}
+
+/// Runs the parts as the search asks for them.
+class PartsRunner {
+  public:
+    PartsRunner(const design::Design& planned, const DesignArguments& arguments, const SharedThreads& shared,
+                const InterruptWatch& watch, ThrottledProgress& reporter)
+        : planned_(planned), arguments_(arguments), shared_(shared), watch_(watch), reporter_(reporter) {}
+
+    Result<bool> operator()(const design::Part& part) {
+        ensemble::EnsembleOptions options;
+        options.runs_at_once = shared_.runs_at_once;
+        options.threads_per_run = shared_.threads_per_run;
+        options.retry_failed = arguments_.retry_failed;
+        options.stop_requested = &watch_.stop_requested();
+        options.on_progress = [&](const ensemble::EnsembleProgress& now) { report(now); };
+        options.on_refused = [&](const std::string& why) { reporter_.note(why); };
+        TALUS_ASSIGN(const auto outcome, run_part(planned_, part, options));
+        reporter_.clear();
+        done_ += outcome.done + outcome.failed;
+        return !outcome.interrupted;
+    }
+
+  private:
+    void report(const ensemble::EnsembleProgress& now) {
+        ensemble::EnsembleProgress all = now;
+        all.done = done_ + now.done;
+        all.count = std::max(planned_.most_runs(), all.done);
+        all.share_done = std::min(1.0, (static_cast<double>(done_) + now.share_done * static_cast<double>(now.count)) /
+                                           static_cast<double>(all.count));
+        const double rate = now.runs_per_minute / 60;
+        all.wall_remaining = rate > 0 ? (1 - all.share_done) * static_cast<double>(all.count) / rate : std::nan("");
+        reporter_.report([&] { return progress_text(all); }, [&] { return progress_json(all); });
+    }
+
+    const design::Design& planned_;
+    const DesignArguments& arguments_;
+    const SharedThreads& shared_;
+    const InterruptWatch& watch_;
+    ThrottledProgress& reporter_;
+    std::size_t done_ = 0;
+};
+
+std::string result_text(const design::DesignResult& result) {
+    std::string text = fmt::format("{:<24}{:>14}{:>14}{:>14}{:>14}{:>14}\n", "line", "least height", "runs pass",
+                                   "volume passes", "holds, m3", "m/s at 95 %");
+    for (const design::LineResult& line : result.lines) {
+        const design::Trial& shown = line.shown();
+        text += fmt::format("{:<24}{:>14}{:>13.1f}%{:>13.1f}%{:>14.0f}{:>14.1f}\n", line.line.name.substr(0, 23),
+                            line.found ? fmt::format("{:g} m", shown.height) : fmt::format("over {:g} m", shown.height),
+                            100 * shown.passing_runs, 100 * shown.passing_volume, line.level.volume, line.speed.p95);
+        for (const std::string& odd : line.not_monotone) text += "  not monotone: " + odd + "\n";
+    }
+    text += "A licensed engineer checks and signs.\n";
+    return text + fmt::format("\n{}\n", (result.design->request.folder / "design.html").string());
+}
+
+int design_command(const DesignArguments& arguments) {
+    if (!arguments.data.empty()) set_data_folder(arguments.data);
+    InterruptWatch watch;
+    const Result<SceneInput> source = open_scene(arguments.scene, arguments.overrides, "", watch);
+    if (!source) return fail(exit_code::bad_input, source.error().message);
+    const auto request = read_arguments(arguments, *source);
+    if (!request) return fail(exit_code::bad_input, request.error().message);
+    const auto planned = design::plan_design(*request);
+    if (!planned) return fail(exit_code::bad_input, planned.error().message);
+    const int cores = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
+    const auto shared = share_threads(arguments.threads, cores, static_cast<int>(planned->runs->count()));
+    if (!shared) return fail(exit_code::bad_input, shared.error().message);
+
+    ThrottledProgress reporter(arguments.quiet, arguments.json);
+    tell_cost(*planned, arguments, *shared, watch, reporter);
+    const auto result = search(*planned, PartsRunner(*planned, arguments, *shared, watch, reporter));
+    reporter.clear();
+    if (!result) return fail(exit_code::fault, result.error().message);
+    if (!*result) {
+        return fail(exit_code::interrupted, "interrupted; the same command resumes from the runs that are complete");
+    }
+    if (const Status written = write_design(**result); !written)
+        return fail(exit_code::failure, written.error().message);
+    if (arguments.json) {
+        nlohmann::ordered_json json = {{"event", "result"}, {"folder", request->folder.string()}};
+        json.update(design_results(**result));
+        return print_result(json.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace) + "\n");
+    }
+    return arguments.quiet ? exit_code::success : print_result(result_text(**result));
+}
+
+}  // namespace
+
+void add_design(CLI::App& program, std::vector<Command>& commands) {
+    CLI::App* app = program.add_subcommand("design", "how high a barrier must be, what it holds and what it must bear");
+    const auto a = std::make_shared<DesignArguments>();
+    app->add_option("scene", a->scene, "scene file; default: the built-in scene")->type_name("SCENE");
+    app->add_option("--barrier", a->barrier, "the barrier of the scene that is designed")
+        ->required()
+        ->type_name("NAME");
+    app->add_option("-o,--output", a->output, "folder; default: talus_out/<scene name>_design")->type_name("DIR");
+    app->add_option("--share", a->share, "that may pass, 0 to below 1; default: 0.05")->type_name("SHARE");
+    app->add_option("--of", a->of, "of the runs or of their volume; default: runs")
+        ->check(CLI::IsMember({"runs", "volume"}))
+        ->type_name("WHAT");
+    app->add_option("--min-height", a->low, "least height tried; default: 1")->type_name("M");
+    app->add_option("--max-height", a->high, "greatest height tried; default: 10")->type_name("M");
+    app->add_option("--height-step", a->step, "default: 0.5")->type_name("M");
+    app->add_option("--line", a->lines, "another line for the barrier: NAME=x,y x,y ... or NAME=FILE; may be repeated")
+        ->type_name("LINE")
+        ->allow_extra_args(false);
+    app->add_option("--confirm", a->confirm, "repeat the deciding runs with particles; default: none")
+        ->check(CLI::IsMember({"particles", "none"}))
+        ->type_name("MODEL");
+    app->add_option("--boulder-diameter", a->boulder, "of the boulder that hits; without it there is no such load")
+        ->type_name("M");
+    app->add_option("--deposition-slope", a->slope, "of debris held behind; default: half the ground's slope")
+        ->type_name("DEGREES");
+    app->add_option("--plan", a->plan, "plan file with factors and design; options override it")->type_name("FILE");
+    app->add_option("--vary", a->factors, "a factor, as of talus ensemble; may be repeated")
+        ->type_name("SECTION.KEY=DISTRIBUTION")
+        ->allow_extra_args(false);
+    app->add_option("--design", a->design, "default: latin_hypercube")->type_name("NAME");
+    app->add_option("--runs", a->runs, "runs of each height; default: 32")->type_name("N");
+    app->add_option("--seed", a->seed, "of the design; default: 1")->type_name("N");
+    add_overrides(*app, a->overrides);
+    add_backend(*app, a->overrides);
+    add_data_folder(*app, a->data);
+    add_thread_options(*app, a->threads, "runs", "all cores");
+    app->add_flag("--retry-failed", a->retry_failed, "repeat runs that failed in an earlier call");
+    CLI::Option* quiet = app->add_flag("--quiet", a->quiet, "print only errors");
+    app->add_flag("--json", a->json, "cost, progress and result as one JSON object per line on stdout")
+        ->excludes(quiet);
+    app->footer(help);
+    commands.push_back({app, [a] { return design_command(*a); }});
+}
+
+}  // namespace talus::cli
