@@ -14,7 +14,7 @@ methods named after them are used.
 """
 
 from ._library import FaultError, InputError, TalusError, version
-from .ensembles import Calibration, Ensemble, Risk, calibrate, ensemble, options, risk
+from .ensembles import Calibration, Design, Ensemble, Risk, calibrate, design, ensemble, options, risk
 from .maps import UNITS, Map, read_geotiff, write_geotiff
 from .measures import Energy, Front, Gauge, RunOut, Structure
 from .simulation import Building, Phase, Simulation
@@ -23,7 +23,7 @@ from .table import Table
 
 __version__ = version
 __all__ = [
-    "UNITS", "Building", "Calibration", "Energy", "Ensemble", "FaultError", "Front", "Gauge", "InputError", "Map", "Phase",
-    "Result", "Risk", "RunOut", "Simulation", "Structure", "Study", "Table", "TalusError", "calibrate", "ensemble", "options",
-    "read_geotiff", "risk", "run", "study", "write_geotiff",
+    "UNITS", "Building", "Calibration", "Design", "Energy", "Ensemble", "FaultError", "Front", "Gauge", "InputError", "Map",
+    "Phase", "Result", "Risk", "RunOut", "Simulation", "Structure", "Study", "Table", "TalusError", "calibrate", "design",
+    "ensemble", "options", "read_geotiff", "risk", "run", "study", "write_geotiff",
 ]  # fmt: skip

@@ -105,6 +105,31 @@ class EnsembleTest(unittest.TestCase):
         with self.assertRaisesRegex(talus.InputError, r"\[\[risk_scenario\]\] is missing"):
             talus.risk(None, {KEY: (0.15, 0.3)}, **call)
 
+    def test_finds_the_least_height_of_a_barrier_on_two_lines(self):
+        scene = pathlib.Path(__file__).parents[2] / "examples" / "risk" / "scene.toml"
+        call = dict(runs=2, threads=1, settings={"scene.option": "gully barrier", "solver.end_time_s": 40})
+        other = [(824236.0, 825763.0), (824264.0, 825753.0)]
+        found = talus.design(scene, "gully barrier", {KEY: (0.15, 0.3)}, share=0, heights_m=(2, 14), height_step_m=6, lines={"other": other}, **call)
+        self.assertEqual([line["name"] for line in found.lines], ["gully barrier", "other"])
+        np.testing.assert_allclose(found.lines[1]["line_m"], other)
+        # Of the heights that were tried, the least that lets nothing pass.
+        own = found.heights["line"] == "gully barrier"
+        enough = found.heights["height_m"][own & (found.heights["passing_share_of_runs"] == 0)]
+        self.assertEqual(found.least_height, enough.min() if len(enough) else None)
+        self.assertGreater(found.lines[0]["undisturbed"]["velocity_mps"]["p95"], 0)
+        self.assertIn("kwan_2012_rigid", found.loads["method"])
+        self.assertIn("licensed engineer", found.limits[-1])
+        self.assertTrue(found.sheet.exists())
+        self.assertRegex(repr(found), "^<talus.Design: gully barrier, ")
+        for sentence, wrong in {
+            "there is no barrier \"dam\"": dict(barrier="dam"),
+            "--share 2.0 is refused": dict(share=2),
+            r"^heights_m = 3: must be \(least, greatest\)": dict(heights_m=3),
+            r"^lines\['a'\] = \[1, 2\]: must be a list of \(x, y\)": dict(lines={"a": [1, 2]}),
+        }.items():
+            with self.assertRaisesRegex(talus.InputError, sentence):
+                talus.design(scene, **{"barrier": "gully barrier", "vary": {KEY: (0.15, 0.3)}, **call, **wrong})
+
     def test_refuses_in_one_sentence(self):
         for sentence, call in {
             "^vary = None: must be keys of the scene": lambda: talus.ensemble(),
