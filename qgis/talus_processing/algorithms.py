@@ -292,3 +292,50 @@ class Options(RiskOf):
         "draws. What varies is a line each, such as\nmaterial.friction_coefficient=0.15:0.3\n"
         "The same folder resumes where an earlier call stopped.\n\n" + SCENE_HELP
     )
+
+
+class Design(ManyRuns):
+    NAME, TITLE = "design", "Barrier design"
+    HELP = (
+        "Finds the least height of a barrier of the scene ([[barrier]]) for which at most a share of the runs, or of their "
+        "volume, passes, and what it holds and must bear: a design sheet to print. What varies is a line each, such as\nmaterial.friction_coefficient=0.15:0.3\n"
+        "The same folder resumes where an earlier call stopped.\n\n" + SCENE_HELP
+    )
+    OF = ["runs", "volume"]
+    CONFIRM = ["none", "particles"]
+
+    def initAlgorithm(self, configuration=None):
+        self.add_scene()
+        self.addParameter(QgsProcessingParameterString("BARRIER", "Barrier, by its name in the scene"))
+        self.add_factors("What varies, a line each: section.key=low:high", 32)
+        self.addParameter(number("SHARE", "Share that may pass, 0 to below 1 (default: 0.05)"))
+        self.addParameter(QgsProcessingParameterEnum("OF", "Share of", self.OF, defaultValue=0))
+        self.addParameter(number("MIN_HEIGHT", "Least height tried, m (default: 1)"))
+        self.addParameter(number("MAX_HEIGHT", "Greatest height tried, m (default: 10)"))
+        self.add_advanced(number("HEIGHT_STEP", "Step between heights, m (default: 0.5)"))
+        lines = "Other lines, one each: NAME=x,y x,y or NAME=FILE"
+        self.addParameter(QgsProcessingParameterString("LINE", lines, multiLine=True, optional=True))
+        confirm = ["no", "the deciding runs again, with particles"]
+        self.addParameter(QgsProcessingParameterEnum("CONFIRM", "Confirm with particles", confirm, defaultValue=0))
+        self.add_advanced(number("BOULDER_DIAMETER", "Diameter of a boulder that hits, m"))
+        self.add_advanced(number("DEPOSITION_SLOPE", "Slope of debris held behind, degrees (default: half the ground's)"))
+        self.add_advanced(number("SEED", "Seed of the design", whole=True))
+        self.add_output("Results", layers=False)
+        self.addOutput(QgsProcessingOutputFile("HEIGHTS", "Heights and what passes, CSV"))
+        self.addOutput(QgsProcessingOutputFile("LOADS", "Loads of published methods, CSV"))
+
+    def processAlgorithm(self, parameters, context, feedback):
+        arguments = self.scene_arguments(parameters, context, feedback) + self.factor_arguments(parameters, context)
+        arguments += ["--barrier", self.parameterAsString(parameters, "BARRIER", context)]
+        arguments += ["--of", self.OF[self.parameterAsEnum(parameters, "OF", context)]]
+        arguments += ["--confirm", self.CONFIRM[self.parameterAsEnum(parameters, "CONFIRM", context)]]
+        for line in lines_of(self.parameterAsString(parameters, "LINE", context)):
+            arguments += ["--line", line]
+        for name in ("SHARE", "MIN_HEIGHT", "MAX_HEIGHT", "HEIGHT_STEP", "BOULDER_DIAMETER", "DEPOSITION_SLOPE", "SEED"):
+            arguments += self.option(parameters, name, context)
+        folder = self.output_folder(parameters, context)
+        results = self.run_many("design", arguments, folder, feedback)
+        results["REPORT"] = os.path.join(folder, "design.html")
+        results["HEIGHTS"] = os.path.join(folder, "heights.csv")
+        results["LOADS"] = os.path.join(folder, "loads.csv")
+        return results

@@ -6,7 +6,7 @@ from processing.core.ProcessingConfig import ProcessingConfig, Setting
 from qgis.core import QgsApplication, QgsProcessingProvider
 from qgis.PyQt.QtGui import QIcon
 
-from .algorithms import Calibrate, Check, Ensemble, NewScene, Options, Risk, Run, SecondOpinion
+from .algorithms import Calibrate, Check, Design, Ensemble, NewScene, Options, Risk, Run, SecondOpinion
 from .program import SETTING
 
 
@@ -35,7 +35,7 @@ class TalusProvider(QgsProcessingProvider):
         ProcessingConfig.removeSetting(SETTING)
 
     def loadAlgorithms(self):
-        for algorithm in (Run, Check, NewScene, SecondOpinion, Ensemble, Calibrate, Risk, Options):
+        for algorithm in (Run, Check, NewScene, SecondOpinion, Ensemble, Calibrate, Risk, Options, Design):
             self.addAlgorithm(algorithm())
 
 

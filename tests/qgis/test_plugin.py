@@ -352,6 +352,19 @@ class Plugin(unittest.TestCase):
         self.assertEqual(buildings.featureCount(), 19)
         self.assertTrue(os.path.exists(os.path.join(output, "options.csv")))
 
+    def test_designs_a_barrier(self):
+        scene = pathlib.Path(__file__).parents[2] / "examples" / "risk" / "scene.toml"
+        output = new_output("design")
+        given = {"SCENE": str(scene), "BARRIER": "gully barrier", "VARY": "material.friction_coefficient=0.15:0.3", "RUNS": 2}
+        heights = {"SHARE": 0, "MIN_HEIGHT": 2, "MAX_HEIGHT": 14, "HEIGHT_STEP": 12}
+        settings = "solver.end_time_s=40\nscene.option=gully barrier"
+        results = run("design", {**given, **heights, "SETTINGS": settings, "OUTPUT": output})
+        self.assertIn("gully barrier", pathlib.Path(results["REPORT"]).read_text())
+        self.assertIn("14", pathlib.Path(results["HEIGHTS"]).read_text())
+        self.assertIn("kwan_2012_rigid", pathlib.Path(results["LOADS"]).read_text())
+        with self.assertRaisesRegex(QgsProcessingException, "there is no barrier \"dam\""):
+            run("design", {**given, "BARRIER": "dam", "SETTINGS": settings, "OUTPUT": new_output("no_design")})
+
     def test_says_what_is_wrong(self):
         output = {"OUTPUT": new_output("wrong")}
         for given, sentence in (
