@@ -20,9 +20,9 @@ namespace {
 
 using nlohmann::json;
 
-constexpr std::array kind_names = {"ensemble", "calibration", "validation", "risk", "options"};
+constexpr std::array kind_names = {"ensemble", "calibration", "validation", "risk", "options", "design"};
 /// The command of each.
-constexpr std::array command_names = {"ensemble", "calibrate", "validate", "risk", "options"};
+constexpr std::array command_names = {"ensemble", "calibrate", "validate", "risk", "options", "design"};
 constexpr std::array state_names = {"waiting", "running", "cancelling", "done", "cancelled", "interrupted", "failed"};
 constexpr std::size_t most_cases = 200;
 
@@ -92,6 +92,57 @@ Status read_design(const json& body, ensemble::EnsemblePlan& plan) {
     }
     plan.design = *design;
     return {};
+}
+
+/// A number of the body, or what the command has.
+Result<double> read_number(const json& body, const char* key, double usual) {
+    const auto found = body.find(key);
+    if (found == body.end()) return usual;
+    if (!found->is_number()) return Error{fmt::format("{} = {}: must be a number", key, twin::shown(*found))};
+    return found->get<double>();
+}
+
+/// What a design wants beside an ensemble; whether it can be had, the design says.
+Status read_barrier(const json& body, design::DesignRequest& request) {
+    TALUS_ASSIGN(request.barrier, name_in(body, "barrier"));
+    TALUS_ASSIGN(request.share, read_number(body, "share", request.share));
+    TALUS_ASSIGN(request.low, read_number(body, "min_height_m", request.low));
+    TALUS_ASSIGN(request.high, read_number(body, "max_height_m", request.high));
+    const json of = body.value("of", json("runs")), confirm = body.value("confirm", json("none"));
+    if (of != "runs" && of != "volume") {
+        return Error{fmt::format("of = {}: must be runs or volume", twin::shown(of))};
+    }
+    if (confirm != "none" && confirm != "particles") {
+        return Error{fmt::format("confirm = {}: must be none or particles", twin::shown(confirm))};
+    }
+    request.of_volume = of == "volume";
+    request.confirm = confirm == "particles";
+    return {};
+}
+
+std::vector<std::string> barrier_arguments(const design::DesignRequest& request) {
+    // The name with its option: it may begin with a dash.
+    return {"--barrier=" + request.barrier,
+            fmt::format("--share={}", request.share),
+            request.of_volume ? "--of=volume" : "--of=runs",
+            fmt::format("--min-height={}", request.low),
+            fmt::format("--max-height={}", request.high),
+            request.confirm ? "--confirm=particles" : "--confirm=none"};
+}
+
+/// Which keys the body of a kind has.
+Status check_wanted_keys(const json& body, JobKind kind) {
+    switch (kind) {
+        case JobKind::validation:
+            return twin::check_keys(body, {"kind", "quick", "cases"});
+        case JobKind::calibration:
+            return twin::check_keys(body, {"kind", "scene", "factors", "runs"});
+        case JobKind::design:
+            return twin::check_keys(body, {"kind", "scene", "factors", "runs", "design", "barrier", "share", "of",
+                                           "min_height_m", "max_height_m", "confirm"});
+        default:
+            return twin::check_keys(body, {"kind", "scene", "factors", "runs", "design"});
+    }
 }
 
 Status read_cases(const json& body, WantedJob& wanted) {
@@ -172,24 +223,26 @@ Result<WantedJob> read_wanted_job(const json& body) {
             fmt::format("kind = {}: must be one of {}", twin::shown(body["kind"]), fmt::join(kind_names, ", "))};
     }
     wanted.kind = static_cast<JobKind>(*known);
+    TALUS_TRY(check_wanted_keys(body, wanted.kind));
     if (wanted.kind == JobKind::validation) {
-        TALUS_TRY(twin::check_keys(body, {"kind", "quick", "cases"}));
         TALUS_TRY(read_cases(body, wanted));
         return Result<WantedJob>(std::move(wanted));
     }
     const bool calibration = wanted.kind == JobKind::calibration;
-    TALUS_TRY(calibration ? twin::check_keys(body, {"kind", "scene", "factors", "runs"})
-                          : twin::check_keys(body, {"kind", "scene", "factors", "runs", "design"}));
     TALUS_ASSIGN(wanted.scene, name_in(body, "scene"));
     TALUS_TRY(read_factors(body, calibration ? JobLimits::calibration_factors : JobLimits::ensemble_factors, wanted));
     wanted.calibration.factors = wanted.ensemble.factors;
+    if (wanted.kind == JobKind::design) {
+        wanted.ensemble.runs = 32;  // of each height, as the command has it
+        TALUS_TRY(read_barrier(body, wanted.design));
+    }
     TALUS_ASSIGN(wanted.ensemble.runs, read_runs(body, wanted.ensemble.runs));
     TALUS_ASSIGN(wanted.calibration.search.runs, read_runs(body, wanted.calibration.search.runs));
     TALUS_TRY(read_design(body, wanted.ensemble));
     using enum stats::DesignKind;
     const bool sample = wanted.ensemble.design == latin_hypercube || wanted.ensemble.design == monte_carlo ||
                         wanted.ensemble.design == sobol;
-    if (is_risk(wanted.kind) && !sample) {
+    if ((is_risk(wanted.kind) || wanted.kind == JobKind::design) && !sample) {
         return Error{
             fmt::format("design = {}: must be latin_hypercube, monte_carlo or sobol, whose points are a sample",
                         twin::shown(body["design"]))};
@@ -220,6 +273,10 @@ std::vector<std::string> arguments_of(const WantedJob& wanted, const std::filesy
         words.insert(words.end(), {"--design", stats::design_name(wanted.ensemble.design)});
     } else {
         words.insert(words.end(), {"--runs", std::to_string(wanted.calibration.search.runs)});
+    }
+    if (wanted.kind == JobKind::design) {
+        const std::vector<std::string> more = barrier_arguments(wanted.design);
+        words.insert(words.end(), more.begin(), more.end());
     }
     words.insert(words.end(), {"--output", folder.string()});
     return words;
@@ -262,7 +319,14 @@ void take_progress(Job& job, const json& event) {
 }
 
 const char* report_of(JobKind kind) {
-    return kind == JobKind::validation ? "validation.html" : "report.html";
+    switch (kind) {
+        case JobKind::validation:
+            return "validation.html";
+        case JobKind::design:
+            return "design.html";
+        default:
+            return "report.html";
+    }
 }
 
 std::string job_text(const Job& job) {

@@ -11,13 +11,14 @@
 
 #include "calibrate/calibration.hpp"
 #include "core/result.hpp"
+#include "design/design.hpp"
 #include "ensemble/plan.hpp"
 
-/// A job of the start page: an ensemble, a calibration, a validation, risk or options that a command of the program
-/// computes.
+/// A job of the start page: an ensemble, a calibration, a validation, risk, options or the design of a barrier that a
+/// command of the program computes.
 namespace talus::serve {
 
-enum class JobKind { ensemble, calibration, validation, risk, options };
+enum class JobKind { ensemble, calibration, validation, risk, options, design };
 enum class JobState { waiting, running, cancelling, done, cancelled, interrupted, failed };
 
 /// Counts what is at risk, or compares options.
@@ -44,6 +45,7 @@ struct WantedJob {
     std::vector<std::string> factors;  ///< as of the option --vary
     ensemble::EnsemblePlan ensemble;
     calibrate::CalibrationPlan calibration;
+    design::DesignRequest design;    ///< but for its plan, which is `ensemble`, and its scene
     bool quick = false;              ///< a validation: the quick cases only
     std::vector<std::string> cases;  ///< likewise: these; empty: all
 };

@@ -10,6 +10,7 @@
 #include "core/number_or_null.hpp"
 #include "core/temporary_folder.hpp"
 #include "core/try.hpp"
+#include "design/design.hpp"
 #include "ensemble/predict.hpp"
 #include "params/fields.hpp"
 #include "risk/study.hpp"
@@ -94,6 +95,23 @@ Status check_risk(const WantedJob& wanted, const Loaded& loaded) {
     return {};
 }
 
+/// As the command plans it.
+Status check_design(const WantedJob& wanted, const Loaded& loaded) {
+    design::DesignRequest request = wanted.design;
+    request.plan = wanted.ensemble;
+    request.source = loaded.source;
+    TALUS_TRY(design::plan_design(request));
+    return {};
+}
+
+json barriers_of(const scene::Scene& scene) {
+    json names = json::array();
+    for (const terrain::Building& building : scene.buildings) {
+        if (building.barrier) names.push_back(building.name);
+    }
+    return names;
+}
+
 /// Thickness or volume, whichever the scene gives.
 void add_releases(const params::SceneSpec& spec, json& list) {
     const params::Section& section = *params::find_section("release");
@@ -124,6 +142,7 @@ json form_json(const scene::Scene& scene) {
             {"observations", observations},
             {"events", names_of(scene.spec.risk_scenarios)},
             {"options", names_of(scene.spec.options)},
+            {"barriers", barriers_of(scene)},
             {"limits",
              {{"runs", JobLimits::runs},
               {"ensemble_factors", JobLimits::ensemble_factors},
@@ -207,6 +226,8 @@ void JobForms::check(const WantedJob& wanted, const KnownScene& scene, const Res
                 TALUS_TRY(ensemble::PlannedRuns::make(wanted.ensemble, loaded->source, loaded->scene));
             } else if (is_risk(wanted.kind)) {
                 TALUS_TRY(check_risk(wanted, *loaded));
+            } else if (wanted.kind == JobKind::design) {
+                TALUS_TRY(check_design(wanted, *loaded));
             } else {
                 TALUS_TRY(calibrate::plan_calibration(wanted.calibration, loaded->source, loaded->scene));
             }

@@ -123,7 +123,7 @@ class EnsembleTest(unittest.TestCase):
         self.assertRegex(repr(found), "^<talus.Design: gully barrier, ")
         for sentence, wrong in {
             "there is no barrier \"dam\"": dict(barrier="dam"),
-            "--share 2.0 is refused": dict(share=2),
+            "--share 2 is refused": dict(share=2),
             r"^heights_m = 3: must be \(least, greatest\)": dict(heights_m=3),
             r"^lines\['a'\] = \[1, 2\]: must be a list of \(x, y\)": dict(lines={"a": [1, 2]}),
         }.items():

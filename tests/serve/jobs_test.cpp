@@ -162,7 +162,8 @@ TEST_F(JobsTest, what_the_command_would_refuse_is_refused_at_once_in_a_sentence)
         EXPECT_GE(answer.status, 400) << answer.body;
         return answer.json()["error"].get<std::string>();
     };
-    EXPECT_THAT(error({{"kind", "run"}}), HasSubstr("must be one of ensemble, calibration, validation, risk, options"));
+    EXPECT_THAT(error({{"kind", "run"}}),
+                HasSubstr("must be one of ensemble, calibration, validation, risk, options, design"));
     EXPECT_THAT(error({{"scene", scene_.scene_file()}}), HasSubstr("nothing of this id"));
     EXPECT_THAT(error({{"runs", 2001}}), HasSubstr("from 1 to 2000"));
     EXPECT_THAT(error({{"factors", json::array()}}), HasSubstr("1 to 8"));
@@ -174,9 +175,34 @@ TEST_F(JobsTest, what_the_command_would_refuse_is_refused_at_once_in_a_sentence)
     EXPECT_THAT(error({{"design", "grid"}}), HasSubstr("latin_hypercube"));
     EXPECT_EQ(error({{"design", "grid"}}).find("grid", sizeof "design = \"grid\""), std::string::npos);
     EXPECT_THAT(error({{"design", "saltelli"}, {"runs", 3}}), HasSubstr("at least"));
+    EXPECT_THAT(error({{"kind", "design"}}), HasSubstr("barrier: is needed"));
+    EXPECT_THAT(error({{"kind", "design"}, {"barrier", "dam"}}), HasSubstr("there is no barrier \"dam\""));
+    EXPECT_THAT(error({{"kind", "design"}, {"barrier", "dam"}, {"share", 2}}), HasSubstr("share 2 is refused"));
+    EXPECT_THAT(error({{"kind", "design"}, {"barrier", "dam"}, {"share", "all"}}), HasSubstr("must be a number"));
+    EXPECT_THAT(error({{"kind", "design"}, {"barrier", "dam"}, {"of", "houses"}}), HasSubstr("must be runs or volume"));
+    EXPECT_THAT(error({{"kind", "design"}, {"barrier", "dam"}, {"confirm", 1}}), HasSubstr("none or particles"));
+    EXPECT_THAT(error({{"kind", "design"}, {"barrier", "dam"}, {"design", "morris"}}), HasSubstr("sample"));
+    EXPECT_THAT(error({{"barrier", "dam"}}), HasSubstr("barrier"));
     EXPECT_THAT(error({{"more", 1}}), HasSubstr("more"));
     EXPECT_EQ(page()["jobs"], json::array());
     EXPECT_FALSE(fs::exists(folder() / "jobs")) << "nothing is left behind";
+}
+
+TEST(JobTest, a_design_is_the_command_with_its_barrier) {
+    const auto wanted = serve::read_wanted_job({{"kind", "design"},
+                                                {"scene", "valley"},
+                                                {"factors", {{{"key", "release.volume_m3"}, {"low", 1}, {"high", 2}}}},
+                                                {"barrier", "-gully"},
+                                                {"share", 0.1},
+                                                {"of", "volume"},
+                                                {"max_height_m", 6},
+                                                {"confirm", "particles"}});
+    ASSERT_TRUE(wanted) << wanted.error().message;
+    EXPECT_THAT(arguments_of(*wanted, "scene.toml", "out"),
+                ::testing::ElementsAre("design", "scene.toml", "--vary", "release.volume_m3=1:2", "--runs", "32",
+                                       "--design", "latin_hypercube", "--barrier=-gully", "--share=0.1", "--of=volume",
+                                       "--min-height=1", "--max-height=6", "--confirm=particles", "--output", "out"));
+    EXPECT_STREQ(serve::report_of(wanted->kind), "design.html");
 }
 
 TEST_F(JobsTest, a_command_that_fails_or_dies_says_why) {

@@ -174,7 +174,7 @@ export interface WantedScene {
   check?: boolean;
 }
 
-export type JobKind = "ensemble" | "calibration" | "validation" | "risk" | "options";
+export type JobKind = "ensemble" | "calibration" | "validation" | "risk" | "options" | "design";
 
 /** An ensemble, a calibration or a validation in a process of its own. */
 export interface Job {
@@ -230,6 +230,8 @@ export interface JobForm {
   events: string[];
   /** Of measures. */
   options: string[];
+  /** None: there is nothing to design. */
+  barriers: string[];
   /** Of a job. */
   limits: JobLimits;
 }
@@ -311,8 +313,34 @@ export interface WantedRisk {
   design?: "latin_hypercube" | "monte_carlo" | "sobol";
 }
 
+/** A job that finds the least height of a barrier. */
+export interface WantedDesign {
+  /** Which job. */
+  kind: "design";
+  /** Id of a scene. */
+  scene: string;
+  /** What varies. */
+  factors: VariedKey[];
+  /** Its name in the scene. */
+  barrier: string;
+  /** Of each height; absent: as the command has it. */
+  runs?: number;
+  /** How values are drawn; absent: as the command has it. */
+  design?: "latin_hypercube" | "monte_carlo" | "sobol";
+  /** That may pass, 0 to below 1; absent: as the command has it. */
+  share?: number;
+  /** Of what; absent: of the runs. */
+  of?: "runs" | "volume";
+  /** Least height tried; absent: as the command has it. */
+  min_height_m?: number;
+  /** Greatest height tried; absent: as the command has it. */
+  max_height_m?: number;
+  /** Repeats the deciding runs; absent: none. */
+  confirm?: "none" | "particles";
+}
+
 /** Body of POST /api/jobs. */
-export type WantedJob = WantedEnsemble | WantedBackAnalysis | WantedValidation | WantedRisk;
+export type WantedJob = WantedEnsemble | WantedBackAnalysis | WantedValidation | WantedRisk | WantedDesign;
 
 /** What is being opened. */
 export interface Opening {

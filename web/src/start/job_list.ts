@@ -11,7 +11,7 @@ export interface JobActions {
   open(job: Job): void;
 }
 
-const names = { ensemble: "Ensemble", calibration: "Calibration", validation: "Validation", risk: "Risk", options: "Options" } as const;
+const names = { ensemble: "Ensemble", calibration: "Calibration", validation: "Validation", risk: "Risk", options: "Options", design: "Barrier design" } as const;
 const isOpen = (job: Job): boolean => job.state === "waiting" || job.state === "running" || job.state === "cancelling";
 
 /** How far a job is, or how it ended, in a sentence. */
@@ -19,7 +19,7 @@ export function jobText(job: Job): string {
   const what = job.kind === "validation" ? "cases" : "runs";
   const failed = job.failed > 0 ? `, ${job.failed} failed` : "";
   const done = job.done + job.failed;
-  const so = job.count > 0 ? `${done} of ${job.kind === "calibration" ? "at most " : ""}${job.count} ${what}${failed}` : "";
+  const so = job.count > 0 ? `${done} of ${job.kind === "calibration" || job.kind === "design" ? "at most " : ""}${job.count} ${what}${failed}` : "";
   const because = job.message === "" ? "" : `: ${job.message}`;
   switch (job.state) {
     case "waiting": return "Waiting for another job";

@@ -1,6 +1,6 @@
-// A new ensemble, calibration, validation, risk or comparison of options: what it varies, how many runs, and how long that takes.
+// A new ensemble, calibration, validation, risk, comparison of options or design of a barrier: what it varies, how many runs, and how long that takes.
 import type { Api } from "../protocol/api";
-import type { JobEstimate, JobForm, JobKind, KnownScene, ValidationCase, WantedEnsemble, WantedJob, WantedRisk } from "../protocol/start";
+import type { JobEstimate, JobForm, JobKind, KnownScene, ValidationCase, WantedDesign, WantedEnsemble, WantedJob, WantedRisk } from "../protocol/start";
 import { bytes } from "../state/format";
 import { firstRange, freeAtFirst } from "../state/misfit";
 import { aboutTime } from "../state/time_left";
@@ -13,6 +13,7 @@ const presets: Record<Exclude<JobKind, "validation">, readonly (readonly [string
   calibration: [["Two values", 60], ["Usual", 100], ["Thorough", 200]],
   risk: [["Quick look", 16], ["Usual", 64], ["Thorough", 256]],
   options: [["Quick look", 16], ["Usual", 64], ["Thorough", 256]],
+  design: [["Quick look", 8], ["Usual", 32], ["Thorough", 128]],
 };
 const designs: readonly (readonly [string, string])[] = [["latin_hypercube", "Latin hypercube"], ["sobol", "Sobol sequence"], ["monte_carlo", "Monte Carlo"],
   ["saltelli", "Sobol indices (Saltelli)"], ["morris", "Elementary effects (Morris)"]];
@@ -21,6 +22,7 @@ const about: Record<JobKind, string> = {
   calibration: "Finds the values that explain the field observations of a scene, with their uncertainty.",
   risk: "What the events of a scene do to buildings, roads and people in a year: impact, loss, individual and societal risk, with a map.",
   options: "The same for each option of measures, with the same draws: differences, and cost against risk averted.",
+  design: "The least height of a barrier of the scene for which no more passes than you allow, what it holds and what it must bear, as a sheet.",
   validation: "Computes cases with known results and compares.",
 };
 const usualCases = "Quick cases: under two minutes on two cores. All cases: about 40 minutes on two cores.";
@@ -31,6 +33,11 @@ export class NewJob {
   private readonly scene: HTMLSelectElement;
   private readonly runs = h("input", { type: "number", min: 1, max: 2000, step: 1, "aria-label": "Number of runs", oninput: () => this.showTime() });
   private readonly design = h("select", { "aria-label": "Design" }, ...designs.map(([value, text]) => h("option", { value }, text)));
+  private readonly barrier = h("select", { "aria-label": "Barrier" });
+  private readonly share = h("input", { type: "number", min: 0, max: 99, step: 1, value: 5, "aria-label": "Share that may pass, %" });
+  private readonly of = h("select", { "aria-label": "Share of" }, h("option", { value: "runs" }, "of the runs"), h("option", { value: "volume" }, "of the volume"));
+  private readonly least = h("input", { type: "number", min: 0.5, step: 0.5, value: 1, "aria-label": "Least height, m", oninput: () => this.showTime() });
+  private readonly greatest = h("input", { type: "number", min: 0.5, step: 0.5, value: 10, "aria-label": "Greatest height, m", oninput: () => this.showTime() });
   private readonly factors = h("div", { class: "job-factors" });
   private readonly body = h("div", { class: "job-body" });
   private readonly time = h("p", { class: "job-time", role: "status" });
@@ -49,7 +56,7 @@ export class NewJob {
       ...scenes.filter((scene) => !scene.missing).map((scene) => h("option", { value: scene.id, selected: scene.id === first }, scene.title || "Scene without a title")));
     this.element = h("section", { class: "new-scene new-job", "aria-labelledby": "new-job" },
       h("div", { class: "start-title" }, h("h2", { id: "new-job" }, "New job"), button("Discard", { class: "quiet", onclick: onclose })),
-      choice("Kind of job", [["ensemble", "Ensemble"], ["calibration", "Calibration"], ["risk", "Risk"], ["options", "Options"], ["validation", "Validation"]], this.kind, (kind: JobKind) => {
+      choice("Kind of job", [["ensemble", "Ensemble"], ["calibration", "Calibration"], ["risk", "Risk"], ["options", "Options"], ["design", "Barrier design"], ["validation", "Validation"]], this.kind, (kind: JobKind) => {
         this.kind = kind;
         this.show();
       }), this.body, this.problem, this.time, h("div", { class: "row new-last" }, h("span", { class: "spring" }), this.begin));
@@ -92,11 +99,11 @@ export class NewJob {
       this.runs.value = String(presets[this.kind][1][1]);
       this.showFactors();
       this.body.replaceChildren(hint, h("label", { class: "row wrap" }, "Scene", this.scene), this.factors,
-        h("div", { class: "row wrap" }, h("label", { class: "row" }, this.kind === "calibration" ? "Runs at most" : this.ensembles() > 1 ? `Runs, ${this.ensembles()} times` : "Runs", this.runs),
+        h("div", { class: "row wrap" }, h("label", { class: "row" }, this.kind === "calibration" ? "Runs at most" : this.kind === "design" ? "Runs of each height" : this.ensembles() > 1 ? `Runs, ${this.ensembles()} times` : "Runs", this.runs),
           ...presets[this.kind].map(([name, count]) => button(`${name}: ${count}`, { class: "small", onclick: () => {
             this.runs.value = String(count);
             this.showTime();
-          } }))), ...(this.kind === "ensemble" ? [h("label", { class: "row wrap" }, "Design", this.design)] : []));
+          } }))), ...(this.kind === "ensemble" ? [h("label", { class: "row wrap" }, "Design", this.design)] : []), ...(this.kind === "design" ? this.barrierRows() : []));
     }
     this.showTime();
   }
@@ -113,6 +120,10 @@ export class NewJob {
     if (this.kind === "options" && form.options.length === 0) {
       return this.factors.replaceChildren(h("p", { class: "empty" }, "This scene has no options to compare. Add [[option]] to its file, as docs/risk.md shows."));
     }
+    if (this.kind === "design") {
+      if (form.barriers.length === 0) return this.factors.replaceChildren(h("p", { class: "empty" }, "This scene has no barrier to design. Add [[barrier]] to its file, or draw one in a session and save the scene."));
+      this.barrier.replaceChildren(...form.barriers.map((name) => h("option", { value: name }, name)));
+    }
     this.rows = form.parameters.map((p) => {
       // An ensemble asks what the scene's own values are uncertain by; a calibration looks for them in a wide range.
       const [low, high] = firstRange(p, p.value);
@@ -128,8 +139,19 @@ export class NewJob {
       ...(this.kind === "risk" || this.kind === "options" ? [h("p", { class: "muted" }, `Events: ${form.events.join(", ") || "one class, without a frequency"}`)] : []),
       ...(this.kind === "options" ? [h("p", { class: "muted" }, `Options: as it is, ${form.options.join(", ")}`)] : []));
   }
+  private barrierRows(): HTMLElement[] {
+    return [h("div", { class: "row wrap" }, h("label", { class: "row" }, "Barrier", this.barrier), h("label", { class: "row" }, "May pass, %", this.share), this.of),
+      h("div", { class: "row wrap" }, h("label", { class: "row" }, "Heights from, m", this.least), h("label", { class: "row" }, "to, m", this.greatest))];
+  }
+  /** How many heights a search tries at most, and one without the barrier: it halves a grid of half metres. */
+  private trials(): number {
+    const heights = Math.floor((this.greatest.valueAsNumber - this.least.valueAsNumber) / 0.5 + 1e-9) + 1;
+    if (!(heights >= 1)) return 1;
+    return 1 + (heights < 3 ? heights : 2 + Math.ceil(Math.log2(heights - 1)));
+  }
   /** How many ensembles a job runs: one for each class of events, and for each option. */
   private ensembles(): number {
+    if (this.kind === "design") return this.trials();
     if (this.kind !== "risk" && this.kind !== "options") return 1;
     const events = Math.max(1, this.form?.events.length ?? 1);
     return this.kind === "risk" ? events : events * (1 + (this.form?.options.length ?? 0));
@@ -165,7 +187,7 @@ export class NewJob {
     else if (estimate.run_s === null) this.time.textContent = "There is no estimate of the time.";
     else {
       const memory = estimate.memory_bytes * Math.min(estimate.cores, runs);
-      this.time.textContent = `${runs} runs with ${estimate.particles.toLocaleString("en-GB")} particles: ${aboutTime(runs * estimate.run_s)} on this computer within a factor of two, ${bytes(memory)} of memory.`;
+      this.time.textContent = `${this.kind === "design" ? "At most " : ""}${runs} runs with ${estimate.particles.toLocaleString("en-GB")} particles: ${aboutTime(runs * estimate.run_s)} on this computer within a factor of two, ${bytes(memory)} of memory.`;
     }
   }
 
@@ -183,6 +205,13 @@ export class NewJob {
     if (this.kind === "risk" || this.kind === "options") {
       const risk: WantedRisk = { kind: this.kind, ...common };
       return risk;
+    }
+    if (this.kind === "design") {
+      const [share, low, high] = [this.share.valueAsNumber / 100, this.least.valueAsNumber, this.greatest.valueAsNumber];
+      if (!(share >= 0 && share < 1)) return "The share that may pass is a number from 0 to below 100 %.";
+      if (!(low > 0 && low <= high)) return "The least height is above 0 and not above the greatest.";
+      const design: WantedDesign = { kind: "design", ...common, barrier: this.barrier.value, share, of: this.of.value as NonNullable<WantedDesign["of"]>, min_height_m: low, max_height_m: high };
+      return design;
     }
     return this.kind === "ensemble" ? { kind: "ensemble", ...common, design: this.design.value as NonNullable<WantedEnsemble["design"]> } : { kind: "calibration", ...common };
   }

@@ -140,7 +140,7 @@ class Start {
 
   private jobSection(jobs: Job[]): HTMLElement {
     return h("section", { "aria-labelledby": "start-jobs" },
-      h("div", { class: "start-title" }, h("h2", { id: "start-jobs" }, "Ensembles, calibrations, risk, validation"), button("New job", { icon: "plus", onclick: () => this.makeJob(null) })),
+      h("div", { class: "start-title" }, h("h2", { id: "start-jobs" }, "Ensembles, calibrations, risk, barriers, validation"), button("New job", { icon: "plus", onclick: () => this.makeJob(null) })),
       jobs.length === 0 ? h("p", { class: "empty" }, "Many runs of a scene, in processes of their own, one job at a time. What is finished stays here.") : null, this.jobs.list);
   }
   private makeJob(scene: string | null): void {
