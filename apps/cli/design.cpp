@@ -19,7 +19,9 @@
 #include "ensemble_text.hpp"
 #include "exit_code.hpp"
 #include "interrupt.hpp"
+#include "ranks.hpp"
 #include "run_cost.hpp"
+#include "sample_options.hpp"
 #include "scene_input.hpp"
 #include "thread_options.hpp"
 #include "throttled_progress.hpp"
@@ -30,12 +32,10 @@ namespace {
 namespace fs = std::filesystem;
 
 struct DesignArguments {
-    std::string scene, output, plan, barrier;
+    std::string scene, output, barrier;
+    SampleOptions sample;
     std::string of = "runs", confirm = "none";
-    std::vector<std::string> factors, lines, overrides;
-    std::optional<std::string> design;
-    std::optional<std::size_t> runs;
-    std::optional<std::uint64_t> seed;
+    std::vector<std::string> lines, overrides;
     double share = 0.05, low = 1, high = 10, step = 0.5;
     std::optional<double> boulder, slope;
     std::string data;
@@ -52,38 +52,15 @@ force and pressure from the runs beside the loads of published methods. Factors 
 Other lines for the same barrier, as places in the scene's reference system or a file with a line:
   --line "upper=824235,825765 824263,825755" --line lower=lower.geojson
 
-The same command resumes where an earlier one stopped. docs/design.md has an example.
+The same command resumes where an earlier one stopped; mpirun -n N distributes the runs, with the same results.
+docs/design.md has an example.
 
 Exit codes: as talus run; 3: too few runs were complete.
 )";
 
 Result<design::DesignRequest> read_arguments(const DesignArguments& arguments, const SceneInput& source) {
     design::DesignRequest request;
-    ensemble::EnsemblePlan& plan = request.plan;
-    plan.runs = 32;
-    if (!arguments.plan.empty()) {
-        TALUS_ASSIGN(plan, ensemble::read_plan(arguments.plan));
-        if (plan.fast_runs > 0) {
-            return Error{arguments.plan + ": ensemble.fast_runs is refused; set solver.model and --confirm instead"};
-        }
-    }
-    for (const std::string& factor : arguments.factors) TALUS_TRY(add_factor(plan, factor));
-    if (arguments.design) {
-        const auto design = stats::design_of(*arguments.design);
-        if (!design) {
-            return Error{fmt::format("--design {} is refused; it must be latin_hypercube, monte_carlo or sobol",
-                                     *arguments.design)};
-        }
-        plan.design = *design;
-    }
-    using enum stats::DesignKind;
-    if (plan.design != latin_hypercube && plan.design != monte_carlo && plan.design != sobol) {
-        return Error{
-            fmt::format("design {} is refused; its points are no sample: latin_hypercube, monte_carlo or sobol",
-                        design_name(plan.design))};
-    }
-    plan.runs = arguments.runs.value_or(plan.runs);
-    plan.seed = arguments.seed.value_or(plan.seed);
+    TALUS_ASSIGN(request.plan, read_sample(arguments.sample, 32, "set solver.model and --confirm instead"));
     request.source = source.source;
     request.scene_name = source.name;
     request.folder =
@@ -102,11 +79,12 @@ Result<design::DesignRequest> read_arguments(const DesignArguments& arguments, c
 }
 
 /// Says what is to be computed at most, and how long that takes, before it starts.
-void tell_cost(const design::Design& planned, const DesignArguments& arguments, const SharedThreads& shared,
+void tell_cost(const design::Design& planned, const DesignArguments& arguments, const SharedThreads& shared, int ranks,
                const InterruptWatch& watch, ThrottledProgress& reporter) {
     const std::size_t missing = planned.missing_runs();
     if (arguments.quiet || missing == 0) return;
-    const double wall = seconds_of_run(*planned.scene, watch) * static_cast<double>(missing) / shared.runs_at_once;
+    const double each = seconds_of_run(*planned.scene, watch);
+    const double wall = each * static_cast<double>(missing) / (shared.runs_at_once * ranks);
     if (arguments.json) {
         const nlohmann::ordered_json json = {{"event", "cost"},
                                              {"runs_at_most", planned.most_runs()},
@@ -122,32 +100,49 @@ void tell_cost(const design::Design& planned, const DesignArguments& arguments, 
         planned.request.confirm ? "; then up to 5 with particles on each line" : ""));
 }
 
-/// Runs the parts as the search asks for them.
+/// Runs the parts as the search asks for them. Each rank makes its share of a part; all then read the same files and
+/// come to the same next height.
 class PartsRunner {
   public:
     PartsRunner(const design::Design& planned, const DesignArguments& arguments, const SharedThreads& shared,
-                const InterruptWatch& watch, ThrottledProgress& reporter)
-        : planned_(planned), arguments_(arguments), shared_(shared), watch_(watch), reporter_(reporter) {}
+                const Ranks& ranks, const InterruptWatch& watch, ThrottledProgress& reporter)
+        : planned_(planned),
+          arguments_(arguments),
+          shared_(shared),
+          ranks_(ranks),
+          watch_(watch),
+          reporter_(reporter) {}
 
     Result<bool> operator()(const design::Part& part) {
+        const Status opened = ranks_.first() ? open_part(part) : Status();
+        if (!ranks_.hear_first(opened.ok())) {
+            return opened.ok() ? Error{"the first rank could not open the folder"} : opened.error();
+        }
         ensemble::EnsembleOptions options;
+        options.shard = static_cast<std::size_t>(ranks_.rank());
+        options.shard_count = static_cast<std::size_t>(ranks_.count());
         options.runs_at_once = shared_.runs_at_once;
         options.threads_per_run = shared_.threads_per_run;
         options.retry_failed = arguments_.retry_failed;
         options.stop_requested = &watch_.stop_requested();
         options.on_progress = [&](const ensemble::EnsembleProgress& now) { report(now); };
         options.on_refused = [&](const std::string& why) { reporter_.note(why); };
-        TALUS_ASSIGN(const auto outcome, run_part(planned_, part, options));
+        const auto outcome = run_part(planned_, part, options);
         reporter_.clear();
-        done_ += outcome.done + outcome.failed;
-        return !outcome.interrupted;
+        const long broken = ranks_.sum(outcome ? 0 : 1);
+        const long interrupted = ranks_.sum(outcome && outcome->interrupted ? 1 : 0);
+        if (!outcome) return outcome.error();
+        if (broken > 0) return Error{"another rank could not make its runs"};
+        done_ += outcome->done + outcome->failed;
+        return interrupted == 0;
     }
 
   private:
+    /// Of all parts together; each of the ranks tells of its own share.
     void report(const ensemble::EnsembleProgress& now) {
         ensemble::EnsembleProgress all = now;
         all.done = done_ + now.done;
-        all.count = std::max(planned_.most_runs(), all.done);
+        all.count = std::max(planned_.most_runs() / static_cast<std::size_t>(ranks_.count()), all.done);
         all.share_done = std::min(1.0, (static_cast<double>(done_) + now.share_done * static_cast<double>(now.count)) /
                                            static_cast<double>(all.count));
         const double rate = now.runs_per_minute / 60;
@@ -158,6 +153,7 @@ class PartsRunner {
     const design::Design& planned_;
     const DesignArguments& arguments_;
     const SharedThreads& shared_;
+    const Ranks& ranks_;
     const InterruptWatch& watch_;
     ThrottledProgress& reporter_;
     std::size_t done_ = 0;
@@ -180,24 +176,30 @@ std::string result_text(const design::DesignResult& result) {
 int design_command(const DesignArguments& arguments) {
     if (!arguments.data.empty()) set_data_folder(arguments.data);
     InterruptWatch watch;
+    if (Status s = Ranks::check(); !s) return fail(exit_code::bad_input, s.error().message);
+    const Ranks ranks;
+    // All ranks find the same faults; one of them reports it.
+    const auto refuse = [&](int code, const std::string& why) { return ranks.first() ? fail(code, why) : code; };
     const Result<SceneInput> source = open_scene(arguments.scene, arguments.overrides, "", watch);
-    if (!source) return fail(exit_code::bad_input, source.error().message);
+    if (!source) return refuse(exit_code::bad_input, source.error().message);
     const auto request = read_arguments(arguments, *source);
-    if (!request) return fail(exit_code::bad_input, request.error().message);
+    if (!request) return refuse(exit_code::bad_input, request.error().message);
     const auto planned = design::plan_design(*request);
-    if (!planned) return fail(exit_code::bad_input, planned.error().message);
+    if (!planned) return refuse(exit_code::bad_input, planned.error().message);
     const int cores = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
-    const auto shared = share_threads(arguments.threads, cores, static_cast<int>(planned->runs->count()));
-    if (!shared) return fail(exit_code::bad_input, shared.error().message);
+    const auto shared =
+        share_threads(arguments.threads, ranks.count() > 1 ? 1 : cores, static_cast<int>(planned->runs->count()));
+    if (!shared) return refuse(exit_code::bad_input, shared.error().message);
 
-    ThrottledProgress reporter(arguments.quiet, arguments.json);
-    tell_cost(*planned, arguments, *shared, watch, reporter);
-    const auto result = search(*planned, PartsRunner(*planned, arguments, *shared, watch, reporter));
+    ThrottledProgress reporter(arguments.quiet || !ranks.first(), arguments.json && ranks.first());
+    if (ranks.first()) tell_cost(*planned, arguments, *shared, ranks.count(), watch, reporter);
+    const auto result = search(*planned, PartsRunner(*planned, arguments, *shared, ranks, watch, reporter));
     reporter.clear();
-    if (!result) return fail(exit_code::fault, result.error().message);
+    if (!result) return refuse(exit_code::fault, result.error().message);
     if (!*result) {
-        return fail(exit_code::interrupted, "interrupted; the same command resumes from the runs that are complete");
+        return refuse(exit_code::interrupted, "interrupted; the same command resumes from the runs that are complete");
     }
+    if (!ranks.first()) return exit_code::success;
     if (const Status written = write_design(**result); !written)
         return fail(exit_code::failure, written.error().message);
     if (arguments.json) {
@@ -235,17 +237,11 @@ void add_design(CLI::App& program, std::vector<Command>& commands) {
         ->type_name("M");
     app->add_option("--deposition-slope", a->slope, "of debris held behind; default: half the ground's slope")
         ->type_name("DEGREES");
-    app->add_option("--plan", a->plan, "plan file with factors and design; options override it")->type_name("FILE");
-    app->add_option("--vary", a->factors, "a factor, as of talus ensemble; may be repeated")
-        ->type_name("SECTION.KEY=DISTRIBUTION")
-        ->allow_extra_args(false);
-    app->add_option("--design", a->design, "default: latin_hypercube")->type_name("NAME");
-    app->add_option("--runs", a->runs, "runs of each height; default: 32")->type_name("N");
-    app->add_option("--seed", a->seed, "of the design; default: 1")->type_name("N");
+    add_sample_options(*app, a->sample, "runs of each height; default: 32");
     add_overrides(*app, a->overrides);
     add_backend(*app, a->overrides);
     add_data_folder(*app, a->data);
-    add_thread_options(*app, a->threads, "runs", "all cores");
+    add_thread_options(*app, a->threads, "runs", "all cores; 1 per rank");
     app->add_flag("--retry-failed", a->retry_failed, "repeat runs that failed in an earlier call");
     CLI::Option* quiet = app->add_flag("--quiet", a->quiet, "print only errors");
     app->add_flag("--json", a->json, "cost, progress and result as one JSON object per line on stdout")

@@ -21,6 +21,7 @@
 #include "risk/study.hpp"
 #include "risk_text.hpp"
 #include "run_cost.hpp"
+#include "sample_options.hpp"
 #include "scene_input.hpp"
 #include "thread_options.hpp"
 #include "throttled_progress.hpp"
@@ -31,13 +32,9 @@ namespace {
 namespace fs = std::filesystem;
 
 struct RiskArguments {
-    std::string scene;                 ///< a scene file; empty: the built-in scene
-    std::string output;                ///< a folder
-    std::string plan;                  ///< a plan file; empty: options alone
-    std::vector<std::string> factors;  ///< "section.key=distribution"
-    std::optional<std::string> design;
-    std::optional<std::size_t> runs;
-    std::optional<std::uint64_t> seed;
+    std::string scene;   ///< a scene file; empty: the built-in scene
+    std::string output;  ///< a folder
+    SampleOptions sample;
     std::vector<std::string> options;  ///< of talus options: those wanted; none: all
     std::vector<std::string> overrides;
     std::string data;
@@ -72,33 +69,12 @@ Exit codes: as talus run; 3: too few runs were complete.
 )";
 
 Result<ensemble::EnsemblePlan> read_arguments(const RiskArguments& arguments) {
-    ensemble::EnsemblePlan plan;
-    if (!arguments.plan.empty()) {
-        TALUS_ASSIGN(plan, ensemble::read_plan(arguments.plan));
-        if (plan.return_period) {
-            return Error{arguments.plan +
-                         ": ensemble.return_period_years is refused; each [[risk_scenario]] of the scene has its own"};
-        }
-        if (plan.fast_runs > 0)
-            return Error{arguments.plan + ": ensemble.fast_runs is refused; set solver.model instead"};
+    TALUS_ASSIGN(ensemble::EnsemblePlan plan,
+                 read_sample(arguments.sample, ensemble::EnsemblePlan().runs, "set solver.model instead"));
+    if (plan.return_period) {
+        return Error{arguments.sample.plan +
+                     ": ensemble.return_period_years is refused; each [[risk_scenario]] of the scene has its own"};
     }
-    for (const std::string& factor : arguments.factors) TALUS_TRY(add_factor(plan, factor));
-    if (arguments.design) {
-        const auto design = stats::design_of(*arguments.design);
-        if (!design) {
-            return Error{fmt::format("--design {} is refused; it must be latin_hypercube, monte_carlo or sobol",
-                                     *arguments.design)};
-        }
-        plan.design = *design;
-    }
-    using enum stats::DesignKind;
-    if (plan.design != latin_hypercube && plan.design != monte_carlo && plan.design != sobol) {
-        return Error{
-            fmt::format("design {} is refused; its points are no sample: latin_hypercube, monte_carlo or sobol",
-                        design_name(plan.design))};
-    }
-    plan.runs = arguments.runs.value_or(plan.runs);
-    plan.seed = arguments.seed.value_or(plan.seed);
     return plan;
 }
 
@@ -277,13 +253,7 @@ void add_command(CLI::App& program, std::vector<Command>& commands, bool compare
             ->type_name("NAME")
             ->allow_extra_args(false);
     }
-    app->add_option("--plan", a->plan, "plan file with factors and design; options override it")->type_name("FILE");
-    app->add_option("--vary", a->factors, "a factor, as of talus ensemble; may be repeated")
-        ->type_name("SECTION.KEY=DISTRIBUTION")
-        ->allow_extra_args(false);
-    app->add_option("--design", a->design, "default: latin_hypercube")->type_name("NAME");
-    app->add_option("--runs", a->runs, "runs of each class of events; default: 64")->type_name("N");
-    app->add_option("--seed", a->seed, "of the design; default: 1")->type_name("N");
+    add_sample_options(*app, a->sample, "runs of each class of events; default: 64");
     add_overrides(*app, a->overrides);
     add_backend(*app, a->overrides);
     add_data_folder(*app, a->data);

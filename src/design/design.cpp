@@ -235,11 +235,17 @@ Result<Design> plan_design(const DesignRequest& request) {
     return design;
 }
 
-Result<ensemble::EnsembleOutcome> run_part(const Design& design, const Part& part, ensemble::EnsembleOptions options) {
+Status open_part(const Part& part) {
     std::error_code error;
     fs::create_directories(part.folder.parent_path(), error);  // opening says what is wrong with it
-    TALUS_ASSIGN(const ensemble::EnsembleFolder folder, ensemble::EnsembleFolder::open(part.folder, part.definition));
+    const auto opened = ensemble::EnsembleFolder::open(part.folder, part.definition);
+    if (!opened) return opened.error();
     fs::create_directories(part.folder / "barrier", error);  // writing says so
+    return {};
+}
+
+Result<ensemble::EnsembleOutcome> run_part(const Design& design, const Part& part, ensemble::EnsembleOptions options) {
+    const auto folder = ensemble::EnsembleFolder::join(part.folder, part.definition);
     const SiteLine& line = design.lines[part.line];
     const std::string& barrier = design.request.barrier;
     options.prepare = [&](scene::Scene& scene) {

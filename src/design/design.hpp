@@ -66,7 +66,10 @@ struct Design {
 
 /// Runs a part, or what is missing of it. False: it was interrupted.
 using PartRunner = std::function<Result<bool>(const Part&)>;
-/// What most runners do, with options of the caller: how many at once, progress.
+/// Makes the folder of a part, for this call and for others beside it. Errors: the folder is of another part, or cannot
+/// be made.
+[[nodiscard]] Status open_part(const Part& part);
+/// Runs a part that is open, with options of the caller: how many at once, progress, which shard.
 [[nodiscard]] Result<ensemble::EnsembleOutcome> run_part(const Design& design, const Part& part,
                                                          ensemble::EnsembleOptions options);
 

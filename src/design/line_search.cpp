@@ -105,6 +105,11 @@ class LineSearch {
             volume += trial.runs[k]->passing();
             crossed += made_.undisturbed[k]->crossed;
         }
+        if (!(count > 0) || !(crossed > 0)) {
+            return Error{
+                fmt::format("line \"{}\": no run that reaches it is complete both without the barrier and at {:g} m",
+                            made_.line.name, trial.height)};
+        }
         trial.passing_runs = passed / count;
         trial.passing_volume = volume / crossed;
         trial.enough = (design_.request.of_volume ? trial.passing_volume : trial.passing_runs) <= design_.request.share;

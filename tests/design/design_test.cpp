@@ -51,6 +51,7 @@ class DesignTest : public scene::SceneFolder {
         auto result = search(design, [&](const Part& part) -> Result<bool> {
             ensemble::EnsembleOptions options;
             options.on_run = [&](const ensemble::RunRecord&) { ++made_; };
+            if (const Status opened = open_part(part); !opened) return opened.error();
             const auto outcome = run_part(design, part, options);
             if (!outcome) return outcome.error();
             return !outcome->interrupted;
