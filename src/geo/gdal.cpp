@@ -13,6 +13,7 @@
 #include "core/try.hpp"
 #include "core/utf8.hpp"
 #include "geo/file_name.hpp"
+#include "geo/versions.hpp"
 
 namespace talus::geo {
 
@@ -38,6 +39,7 @@ void prepare_gdal() {
         CPLSetErrorHandler(CPLQuietErrorHandler);
         CPLSetConfigOption("CPL_VSIL_GZIP_WRITE_PROPERTIES", "NO");  // no file beside an input
         GDALAllRegister();
+        (void)proj_version();  // see there
     });
 }
 

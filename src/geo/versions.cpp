@@ -10,9 +10,14 @@ std::string gdal_version() {
 }
 
 std::string proj_version() {
-    int major = 0, minor = 0, patch = 0;
-    OSRGetPROJVersion(&major, &minor, &patch);
-    return std::to_string(major) + "." + std::to_string(minor) + "." + std::to_string(patch);
+    // Asking writes to PROJ's default context, from which every thread copies its own: it is asked once, before others
+    // work.
+    static const std::string version = [] {
+        int major = 0, minor = 0, patch = 0;
+        OSRGetPROJVersion(&major, &minor, &patch);
+        return std::to_string(major) + "." + std::to_string(minor) + "." + std::to_string(patch);
+    }();
+    return version;
 }
 
 }  // namespace talus::geo
