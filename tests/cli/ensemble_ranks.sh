@@ -24,6 +24,15 @@ for file in probability_depth_0.1m.tif peak_depth_p95.tif buildings.csv distribu
     cmp "$folder/fast_one/$file" "$folder/fast_two/$file"
 done
 (($(find "$folder/fast_two/fast/runs" -name '*.run' | wc -l) == 12))
+# So is the design of a barrier: each rank makes its share of the runs of a height, and all go on to the same next height.
+design=(design "$(dirname "$0")/../../examples/barrier/scene.toml" --barrier barrier
+        --vary material.friction_coefficient=0.15:0.25 --runs 3 --min-height 1 --max-height 7 --height-step 2
+        --set solver.model=depth_averaged --set solver.grid_cell_m=5 --set solver.end_time_s=30 --quiet)
+"$program" "${design[@]}" -o "$folder/design_one"
+"$mpirun" -n 2 "$program" "${design[@]}" -o "$folder/design_two"
+for file in heights.csv runs.csv loads.csv; do
+    cmp "$folder/design_one/$file" "$folder/design_two/$file"
+done
 # All ranks stop at bad input, and one of them says why.
 status=0
 "$mpirun" -n 2 "$program" ensemble --vary material.viscosity=0.2:0.1 -o "$folder/bad" 2>"$folder/error" || status=$?
