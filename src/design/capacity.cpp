@@ -87,20 +87,44 @@ Storage storage_behind(const terrain::Terrain& terrain, const std::vector<PlanPo
                          std::max(1, static_cast<int>((area.y_max - area.y_min) / cell))};
 
     const WorldPoint& origin = terrain.frame().origin;
-    Grid<float> room(g, std::numeric_limits<float>::quiet_NaN());  // m below the surface; NaN: not behind the barrier
-    Grid<float> away(g, 0);
+    const auto place_at = [&](const PlanPoint& p) { return plan.place_of({p.x - origin.x, p.y - origin.y}); };
+    const auto is_behind = [&](const PlanPoint& p) {
+        const auto place = place_at(p);
+        return place.side == side && place.distance >= thickness / 2;
+    };
+    // Below the surface, m; NaN: unknown ground.
+    const auto space_at = [&](const PlanPoint& p) {
+        return crest + slope * (place_at(p).distance - thickness / 2) - terrain.elevation_at(p);
+    };
+    Grid<float> room(g, std::numeric_limits<float>::quiet_NaN());  // mean of space_at; NaN: not behind the barrier
+    Grid<float> covered(g, 0);                                     // share of the cell that is behind it
     std::queue<std::pair<int, int>> wet;
     Grid<std::uint8_t> filled(g, 0);
+    // A barrier cuts cells where debris is deepest: those count with the part behind it.
+    constexpr int parts = 6;
     for (int row = 0; row < g.rows; ++row) {
         for (int column = 0; column < g.columns; ++column) {
             const PlanPoint p = g.centre(column, row);
-            const auto place = plan.place_of({p.x - origin.x, p.y - origin.y});
-            const double ground = terrain.elevation_at(p);
-            if (place.side != side || place.distance < thickness / 2 || std::isnan(ground)) continue;
-            const double space = crest + slope * (place.distance - thickness / 2) - ground;
-            room.at(column, row) = static_cast<float>(space);
-            away.at(column, row) = static_cast<float>(place.distance);
-            if (space > 0 && place.distance < thickness / 2 + 2 * cell) {
+            int corners = 0;
+            for (const double right : {-0.5, 0.5}) {
+                for (const double up : {-0.5, 0.5}) corners += is_behind({p.x + right * cell, p.y + up * cell}) ? 1 : 0;
+            }
+            if (corners == 0 && !is_behind(p)) continue;
+            const int n = corners < 4 ? parts : 1;
+            double sum = 0;
+            int behind = 0;
+            for (int k = 0; k < n * n; ++k) {
+                const double right = (k % n + 0.5) / n - 0.5, up = (k / n + 0.5) / n - 0.5;
+                const PlanPoint q{p.x + right * cell, p.y + up * cell};
+                const double space = space_at(q);
+                if (std::isnan(space) || (n > 1 && !is_behind(q))) continue;
+                sum += space;
+                ++behind;
+            }
+            if (behind == 0) continue;
+            room.at(column, row) = static_cast<float>(sum / behind);
+            covered.at(column, row) = static_cast<float>(behind) / static_cast<float>(n * n);
+            if (sum > 0 && place_at(p).distance < thickness / 2 + 2 * cell) {
                 filled.at(column, row) = 1;
                 wet.emplace(column, row);
             }
@@ -110,9 +134,11 @@ Storage storage_behind(const terrain::Terrain& terrain, const std::vector<PlanPo
     while (!wet.empty()) {
         const auto [column, row] = wet.front();
         wet.pop();
-        storage.volume += static_cast<double>(room.at(column, row)) * cell * cell;
-        storage.area += cell * cell;
-        storage.reach = std::max(storage.reach, static_cast<double>(away.at(column, row)));
+        const double area_here = static_cast<double>(covered.at(column, row)) * cell * cell;
+        const double distance = place_at(g.centre(column, row)).distance;
+        storage.volume += static_cast<double>(room.at(column, row)) * area_here;
+        storage.area += area_here;
+        storage.reach = std::max(storage.reach, distance);
         for (const auto& [dx, dy] : {std::pair{1, 0}, {-1, 0}, {0, 1}, {0, -1}}) {
             const int c = column + dx, r = row + dy;
             if (c < 0 || r < 0 || c >= g.columns || r >= g.rows) continue;
@@ -120,9 +146,9 @@ Storage storage_behind(const terrain::Terrain& terrain, const std::vector<PlanPo
             if (std::isnan(space)) {
                 // Beyond a perpendicular, on ground that lies lower than the surface here.
                 const PlanPoint p = g.centre(c, r);
-                const auto place = plan.place_of({p.x - origin.x, p.y - origin.y});
+                const auto place = place_at(p);
                 const double ground = terrain.elevation_at(p);
-                const double surface = crest + slope * static_cast<double>(away.at(column, row));
+                const double surface = crest + slope * distance;
                 storage.open_sides = storage.open_sides || (place.side == 0 && ground < surface);
             } else if (space > 0 && filled.at(c, r) == 0) {
                 filled.at(c, r) = 1;
