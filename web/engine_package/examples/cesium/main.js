@@ -70,6 +70,7 @@ try {
     const state = await run.advance(0.1);
     const earth = show(await run.particles());
     panel.textContent = `${scene.title}: ${state.time_s.toFixed(1)} s, ${state.status}`;
+    panel.dataset.globe = widget.scene.globe.tilesLoaded ? "drawn" : "waiting";
     panel.dataset.first = Array.from(earth.subarray(0, 3)).join(" ");
     await new Promise(state.status === "paused" ? requestAnimationFrame : (next) => setTimeout(next, 200));
   }
