@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Installs what building needs, builds the engine of published twins and the program, and makes packages for Debian and a relocatable archive in build/package:
-# talus, libtalus<version>, libtalus-dev, python3-talus and talus-doc as .deb, and talus-<version>-Linux.tar.gz
+# talus, libtalus<version>, libtalus-dev, python3-talus and talus-doc as .deb, talus-<version>-Linux.tar.gz, and talus-engine-<version>.tgz for npm
 #   scripts/package.sh          makes them
 #   scripts/package.sh --test   checks the packages with lintian, installs them into a fresh Debian 12 in a temporary folder, as
 #                               root, and runs what they hold
@@ -23,6 +23,11 @@ if command -v python3 >/dev/null; then
     python3 python/make_wheel.py build/release/apps/embed/libtalus.so build/release/bin/talus build/package
 else
     echo "scripts/package.sh: no wheel is made: python3 is not installed" >&2
+fi
+if [[ -s build/web_engine/talus_engine.wasm ]] && command -v npm >/dev/null; then
+    web/engine_package/pack.sh build/web_engine build/package
+else
+    echo "scripts/package.sh: no package for npm is made: npm or build/web_engine/talus_engine.wasm is not there" >&2
 fi
 ls -l build/package
 [[ ${1:-} == --test ]] || exit 0

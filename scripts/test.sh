@@ -7,6 +7,7 @@
 #   scripts/test.sh tsan      what runs in parallel, under the thread sanitizer
 #   scripts/test.sh style     format, clang-tidy, layers, files; with TALUS_CHANGED_SINCE=<revision> clang-tidy looks only
 #                             at the modules that have changed since
+#   scripts/test.sh publish   the engine of published twins and the npm package talus-engine; installs emscripten and Cesium
 #   scripts/test.sh qgis      the plugin for QGIS, in QGIS without a window; installs QGIS
 #   scripts/test.sh dev       all tests with assertions, every file compiled by itself
 set -euo pipefail
@@ -59,13 +60,15 @@ install_browser_tests() {
     fi
 }
 
-# Builds the page's engine with emscripten, and compares its results with the program's.
+# Builds the page's engine with emscripten, compares its results with the program's, and tests the npm package with its examples.
 test_page_engine() {
     scripts/install_packages.sh publish
+    install_browser_tests
     cmake --preset release
     cmake --build --preset release --target talus test_pack --parallel "$(nproc)"
     apps/web_engine/build.sh build/web_engine
     (cd web && npm ci --no-audit --no-fund)
+    npm ci --prefix web/engine_package/examples/cesium --ignore-scripts --no-audit --no-fund # 53 MB, for this test alone
     tests/web_engine/run.sh
 }
 

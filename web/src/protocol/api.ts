@@ -2,7 +2,7 @@
 import type { Possible, Transport } from "./transport";
 import { decodeFrame, type Frame, type ScenarioName } from "./frame";
 import { decodeGrid, type Grid } from "./grid";
-import type { Action, DepthAveragedComparison, Done, Ensemble, ExportFile, Figure, FlowExport, FlowFormat, FlowOffer, GaugeReadings, Impacts, LayerName, NewScenario, Observed, OverlayData, ProbeSeries, Recording, SceneInfo, Series, Session, Share, Tiles, WantedOverlay, WantedShare } from "./messages";
+import type { Action, DepthAveragedComparison, Done, Ensemble, ExportFile, Figure, FlowExport, FlowFormat, FlowOffer, GaugeReadings, Impacts, LayerName, NewScenario, Observed, OverlayData, ProbeSeries, Recording, SceneInfo, Series, Session, Setup, Share, State, Tiles, WantedOverlay, WantedShare } from "./messages";
 import type { Checked, Draft, DraftRole, JobEstimate, JobForm, MendingOfTerrain, StartPage, ValidationCase, WantedJob, WantedScene } from "./start";
 
 /** The server's answer to a request that it refused. */
@@ -71,6 +71,8 @@ export class Api {
   session = (): Promise<Session> => this.json("session");
   scene = (): Promise<SceneInfo> => this.json("scene");
   terrain = async (maxCells: number): Promise<Grid> => decodeGrid(await this.binary(`terrain?max_cells=${maxCells}`));
+  state = (s: ScenarioName): Promise<State> => this.json(`scenarios/${s}/state`);
+  setup = (s: ScenarioName): Promise<Setup> => this.json(`scenarios/${s}/setup`);
   series = (s: ScenarioName): Promise<Series> => this.json(`scenarios/${s}/series`);
   /** Now, or at a time of the recording. */
   impacts = (s: ScenarioName, time_s: number | null = null): Promise<Impacts> => this.json(`scenarios/${s}/impacts${at(time_s)}`);
@@ -89,8 +91,8 @@ export class Api {
   ensembles = async (): Promise<Ensemble[]> => (await this.json<{ ensembles: Ensemble[] }>("ensembles")).ensembles;
   ensembleMap = async (ensemble: string, name: string): Promise<Grid> => decodeGrid(await this.binary(`ensembles/${ensemble}/maps/${name}`));
   orthophoto = (): Promise<Blob> => this.blob("orthophoto");
-  frame = async (s: ScenarioName, time_s: number): Promise<Frame> =>
-    (await this.transport.frame?.(s, time_s)) ?? decodeFrame(await this.binary(`scenarios/${s}/frame?time_s=${time_s.toFixed(4)}`));
+  frame = async (s: ScenarioName, time_s: number | null): Promise<Frame> =>
+    (time_s === null ? null : await this.transport.frame?.(s, time_s)) ?? decodeFrame(await this.binary(`scenarios/${s}/frame${at(time_s)}`));
   probe = (s: ScenarioName, x: number, y: number): Promise<ProbeSeries> =>
     this.json(`scenarios/${s}/probe?x_m=${x.toFixed(2)}&y_m=${y.toFixed(2)}`);
   exports = async (s: ScenarioName): Promise<ExportFile[]> => (await this.json<{ files: ExportFile[] }>(`scenarios/${s}/exports`)).files;
