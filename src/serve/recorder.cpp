@@ -14,6 +14,7 @@
 
 #include "core/try.hpp"
 #include "observe/map_names.hpp"
+#include "serve/library.hpp"
 #include "serve/site_archive.hpp"
 #include "session/json_text.hpp"
 
