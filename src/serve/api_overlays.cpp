@@ -15,6 +15,11 @@ void add_overlay_routes(Router& router, Overlays& overlays) {
          [&overlays](const Request& request, const Respond& respond) { overlays.data(request, true, respond); }});
     router.add({"GET", "/api/tiles", Role::viewer,
                 [&overlays](const Request&, const Respond& respond) { overlays.tiles(respond); }});
+    router.add({"POST", "/api/tiles", Role::controller,
+                [&overlays](const Request& request, const Respond& respond) { overlays.add_tiles(request, respond); }});
+    router.add(
+        {"DELETE", "/api/tiles/{id}", Role::controller,
+         [&overlays](const Request& request, const Respond& respond) { overlays.remove_tiles(request, respond); }});
     Route upload{"PUT", "/api/overlays", Role::controller,
                  [](const Request&, const Respond& respond) { respond(error_response(400, "the file is empty")); }};
     upload.query = {"name"};

@@ -6,12 +6,15 @@
 #include <boost/beast/http/message.hpp>
 #include <boost/beast/http/string_body.hpp>
 #include <chrono>
+#include <string>
+#include <vector>
 
 #include "serve/access.hpp"
 #include "serve/connection_counts.hpp"
 #include "serve/open_session.hpp"
 #include "serve/router.hpp"
 #include "serve/site.hpp"
+#include "serve/tile_addresses.hpp"
 
 /// Shared by the files for HTTP and WebSocket.
 namespace talus::serve {
@@ -28,9 +31,14 @@ struct ServerContext {
     Site site;
     std::chrono::milliseconds patience;  ///< timeout of a silent connection, or of one that sends its header slowly
     ConnectionCounts connections;
-    std::size_t people_limit = 0;  ///< WebSockets at once, at most
-    std::string tile_origins =
-        {};  ///< " https://tile.example.org": from which the page may load pictures, besides here
+    std::size_t people_limit = 0;         ///< WebSockets at once, at most
+    std::vector<std::string> tiles = {};  ///< addresses of map tiles that the program was started with
+
+    /// From which the page may load pictures, besides here, as " https://tile.example.org". A page that is loaded again
+    /// may load from those that people have added to the session since.
+    [[nodiscard]] std::string tile_origins() const {
+        return origins_of(open ? open->overlays.tile_addresses() : tiles);
+    }
 };
 
 inline constexpr std::size_t largest_header = 16 * 1024, largest_body = 1024 * 1024, largest_message = 64 * 1024;

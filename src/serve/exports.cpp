@@ -9,11 +9,13 @@
 
 #include "core/try.hpp"
 #include "geo/longitude_latitude.hpp"
+#include "geo/vector.hpp"
 #include "products/text_file.hpp"
 #include "scene/bundle.hpp"
 #include "serve/api.hpp"
 #include "serve/library.hpp"
 #include "session/json_text.hpp"
+#include "twin/scene_copy.hpp"
 
 namespace talus::serve {
 namespace {
@@ -51,7 +53,7 @@ constexpr ExportFile export_files[] = {
      "Inundation, arrival times and structures hit, for Google Earth and phones", Needs::globe},
     {"stac_item.json", "application/geo+json", "Place, time, software and files, for catalogues of geodata"},
     {scene_zip, "application/zip",
-     "The scene and its files, with the gauges, observations, triggers and alarms of this scenario, for talus run",
+     "The scene and its files with the changes of this scenario, but for releases, inflows and beds, for talus run",
      Needs::source},
     {"manifest.json", "application/json", "All parameters, versions, checksums and the result's hash"},
     {"peak_depth.tif", "image/tiff", "Peak flow depth, m"},
@@ -118,6 +120,16 @@ Response answer_with(Bytes bytes, const ExportFile& file) {
 Response read_file(const fs::path& path, const ExportFile& file, SentFiles& files) {
     auto bytes = files.read(path);
     return bytes ? answer_with(std::move(*bytes), file) : error_response(500, bytes.error().message);
+}
+
+/// As `folder`/scene.toml, with the file that it names beside it.
+Status write_copy(const twin::SceneCopy& copy, const geo::Crs& crs, const fs::path& folder) {
+    TALUS_TRY(products::write_text_file(folder / "scene.toml", copy.text));
+    const std::string drawn = (folder / twin::SceneCopy::drawn_file).string();
+    for (const twin::DrawnLayer& layer : copy.layers) {
+        TALUS_TRY(geo::write_geopackage_layer(drawn, layer.name, layer.fields, layer.features, crs));
+    }
+    return {};
 }
 
 }  // namespace
@@ -228,22 +240,23 @@ void Exports::file(const std::string& scenario, const std::string& name, const R
 
 void Exports::scene_archive(const twin::Scenario& scenario, const Respond& respond) {
     const fs::path folder = folder_ / fmt::format("scene{}", ++count_);
-    writer_->post([this, folder, source = source_, text = scenario.scene_text(), respond] {
+    writer_->post([this, folder, source = source_, copy = scenario.copy_of_scene(), respond] {
         const ExportFile& wanted = *find_file(scene_zip);
         const auto made = [&]() -> Result<Response> {
             // It is written into another folder: its files need whole paths.
-            TALUS_ASSIGN(const std::string scene, text(fs::absolute(source.file), source.overrides));
-            if (Bytes sent = archive_sent_.lock(); sent && scene == archived_)
+            TALUS_ASSIGN(const twin::SceneCopy scene, copy(fs::absolute(source.file), source.overrides));
+            // What is in a layer does not show in the text.
+            if (Bytes sent = archive_sent_.lock(); sent && scene.layers.empty() && scene.text == archived_)
                 return answer_with(std::move(sent), wanted);
             std::error_code error;
             fs::create_directories(folder, error);
             if (error) return Error{fmt::format("{}: {}", folder.string(), error.message())};
-            TALUS_TRY(products::write_text_file(folder / "scene.toml", scene));
+            TALUS_TRY(write_copy(scene, session_.scene()->crs, folder));
             TALUS_TRY(scene::write_bundle(folder / "scene.toml", folder / scene_zip));
             Response response = read_file(folder / scene_zip, wanted, sent_);
             if (response.status == 200) {
                 archive_sent_ = response.body;
-                archived_ = scene;
+                archived_ = scene.layers.empty() ? scene.text : "";
             }
             return response;
         }();

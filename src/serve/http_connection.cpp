@@ -370,7 +370,7 @@ void HttpConnection::give_file() {
             "default-src 'self'; script-src 'self'; style-src 'self'; connect-src 'self' ws://{0} wss://{0}; "
             "img-src 'self' blob: data:{1}; worker-src 'self' blob:; media-src 'self' blob:; object-src 'none'; "
             "base-uri 'none'; form-action 'none'; frame-ancestors 'none'",
-            host, context_.tile_origins));
+            host, context_.tile_origins()));
     message.set("Cross-Origin-Opener-Policy", "same-origin");
     write(std::move(message));
 }

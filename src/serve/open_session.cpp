@@ -22,7 +22,7 @@ OpenSession::OpenSession(Thread thread, std::shared_ptr<const scene::Scene> scen
 
 Result<OpenSessionPtr> OpenSession::open(const Thread& thread, const std::shared_ptr<const scene::Scene>& scene,
                                          const ServerOptions& options, std::vector<OpeningScenario> scenarios,
-                                         std::vector<Overlay> laid) {
+                                         std::vector<Overlay> laid, const std::vector<TileAddress>& tiles) {
     auto made = std::make_shared<OpenSession>(thread, scene, options);
     TALUS_ASSIGN(made->ensembles, Ensembles::read(options.ensembles, *scene));
     const auto on_failure = options.on_failure ? options.on_failure : [](const std::string&) {};
@@ -32,7 +32,7 @@ Result<OpenSessionPtr> OpenSession::open(const Thread& thread, const std::shared
         make_api(made->session, made->exports, made->ensembles, made->calibrations, made->alerts, made->overlays);
     add_flow_routes(made->router, made->flows);
     if (published_page()) made->exports.offer_twin([raw = made.get()](const Respond& r) { raw->twin_page.file(r); });
-    made->overlays.open(std::move(laid));
+    made->overlays.open(std::move(laid), tiles);
     add_depth_averaged_routes(made->router, made->session, made->depth_averaged);
     if (const Status opened = made->alerts.open(); !opened) {
         retire(thread, std::move(made));

@@ -39,7 +39,8 @@ struct OpenSession {
                                                                    const std::shared_ptr<const scene::Scene>& scene,
                                                                    const ServerOptions& options,
                                                                    std::vector<OpeningScenario> scenarios = {},
-                                                                   std::vector<Overlay> overlays = {});
+                                                                   std::vector<Overlay> overlays = {},
+                                                                   const std::vector<TileAddress>& tiles = {});
     /// Ends the threads; requests that wait are not answered. Nobody may use the session any more.
     void close();
     /// From any thread but the server's: closes a session that the server's thread may have tasks of, and lets it go

@@ -1,9 +1,7 @@
 #include "serve/overlay.hpp"
 
 #include <algorithm>
-#include <cctype>
 #include <cmath>
-#include <initializer_list>
 #include <limits>
 #include <openssl/evp.h>
 #include <optional>
@@ -21,7 +19,7 @@ namespace {
 
 using nlohmann::json;
 
-constexpr std::size_t longest_saved_name = 80, longest_note = 400, longest_address = 500;
+constexpr std::size_t longest_saved_name = 80, longest_note = 400;
 constexpr std::string_view vector_type = "application/json";
 
 std::string to_base64(const std::string& bytes) {
@@ -126,37 +124,6 @@ Result<std::vector<Overlay>> read_saved_overlays(const json& written, const Over
     }
     if (bytes > quota.bytes) return Error{fmt::format("overlays: are longer than {} bytes", quota.bytes)};
     return Result<std::vector<Overlay>>(std::move(overlays));
-}
-
-std::string origin_of(const std::string& address) {
-    const std::size_t host = address.find("://");
-    return address.substr(0, address.find('/', host == std::string::npos ? 0 : host + 3));
-}
-
-Status check_tile_address(const std::string& address) {
-    const auto refused = [&](const std::string& why) {
-        return Error{fmt::format("{}: {}; for example https://tile.example.org/{{z}}/{{x}}/{{y}}.png",
-                                 tidy_name(address, 100), why)};
-    };
-    if (!address.starts_with("https://") && !address.starts_with("http://"))
-        return refused("begins with neither https:// nor http://");
-    if (address.size() > longest_address) return refused(fmt::format("is longer than {} bytes", longest_address));
-    const auto plain = [](unsigned char c) { return c > 0x20 && c < 0x7f && c != '"' && c != '\'' && c != '\\'; };
-    if (!std::all_of(address.begin(), address.end(), plain)) return refused("has characters that no address has");
-    const std::string origin = origin_of(address);
-    const std::string host = origin.substr(origin.find("://") + 3);
-    const auto in_host = [](unsigned char c) { return std::isalnum(c) != 0 || c == '.' || c == '-' || c == ':'; };
-    if (host.empty() || !std::isalnum(static_cast<unsigned char>(host[0])) ||
-        !std::all_of(host.begin(), host.end(), in_host)) {
-        return refused("names no host");
-    }
-    const auto has = [&](std::initializer_list<const char*> keys) {
-        return std::any_of(keys.begin(), keys.end(),
-                           [&](const char* key) { return address.find(key, origin.size()) != std::string::npos; });
-    };
-    if (!has({"{z}", "{TileMatrix}"}) || !has({"{x}", "{TileCol}"}) || !has({"{y}", "{TileRow}"}))
-        return refused("has no {z}, {x} and {y} for the number of a tile");
-    return {};
 }
 
 }  // namespace talus::serve

@@ -44,10 +44,4 @@ struct OverlayQuota {
 [[nodiscard]] Result<std::vector<Overlay>> read_saved_overlays(const nlohmann::json& written,
                                                                const OverlayQuota& quota = {});
 
-/// An address of map tiles, with {z}, {x} and {y}, or {TileMatrix}, {TileCol} and {TileRow} of a WMTS in Web Mercator.
-/// Errors: not http or https, other characters in the host, a key that is missing.
-[[nodiscard]] Status check_tile_address(const std::string& address);
-/// "https://tile.example.org", what a Content-Security-Policy names; `address` is one that has been checked.
-[[nodiscard]] std::string origin_of(const std::string& address);
-
 }  // namespace talus::serve

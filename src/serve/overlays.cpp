@@ -11,7 +11,6 @@
 #include <fmt/format.h>
 
 #include "core/try.hpp"
-#include "geo/longitude_latitude.hpp"
 #include "serve/api.hpp"
 #include "serve/draft.hpp"
 #include "session/json_text.hpp"
@@ -25,7 +24,6 @@ namespace fs = std::filesystem;
 
 constexpr double largest_picture = 1e9;  // pixels; it is read at a fraction of its size
 constexpr std::size_t longest_layer_name = 80, most_files = 200;
-constexpr int grid_steps = 32;  // of the terrain, between places whose longitude and latitude are told
 
 /// Distinct on grass, rock and debris, for layers whose files have no style.
 constexpr std::array<const char*, 8> layer_colours = {"#d1495b", "#1f6feb", "#e8a202", "#7b2d8b",
@@ -166,13 +164,9 @@ class Overlays::Taking : public Intake {
     std::ofstream out_;
 };
 
-Overlays::Overlays(Session& session, fs::path folder, geo::ForeignReader reader, std::vector<std::string> tiles,
+Overlays::Overlays(Session& session, fs::path folder, geo::ForeignReader reader, const std::vector<std::string>& tiles,
                    OverlayQuota quota)
-    : session_(session),
-      folder_(std::move(folder)),
-      reader_(std::move(reader)),
-      tiles_(std::move(tiles)),
-      quota_(quota) {}
+    : session_(session), folder_(std::move(folder)), reader_(std::move(reader)), quota_(quota), tiles_(tiles) {}
 
 void Overlays::close() {
     *stop_ = true;
@@ -202,7 +196,8 @@ void Overlays::give_id(Overlay& overlay) {
     overlay.id = fmt::format("overlay-{}", ++numbers_);
 }
 
-void Overlays::open(std::vector<Overlay> overlays) {
+void Overlays::open(std::vector<Overlay> overlays, const std::vector<TileAddress>& tiles) {
+    tiles_.open(tiles);
     list_ = std::move(overlays);
     for (Overlay& overlay : list_) give_id(overlay);
     tell();
@@ -221,16 +216,22 @@ std::size_t Overlays::bytes() const {
 json Overlays::describe() const {
     json list = json::array();
     for (const Overlay& overlay : list_) list.push_back(to_json(overlay));
+    json removed;
+    if (const auto* overlay = std::get_if<Overlay>(&removed_)) removed = overlay->name;
+    if (const auto* tile = std::get_if<TileAddress>(&removed_)) removed = host_of(tile->address);
     return {{"overlays", std::move(list)},
-            {"removed", removed_ ? json(removed_->name) : json()},
-            {"tiles", !tiles_.empty()},
+            {"removed", std::move(removed)},
+            {"tiles", tiles_.describe()},
             {"bytes_left", quota_.bytes - std::min(quota_.bytes, bytes())}};
 }
 
 json Overlays::saved() const {
     json list = json::array();
     for (const Overlay& overlay : list_) list.push_back(to_saved(overlay));
-    return list;
+    json all{{"overlays", std::move(list)}};
+    // Programs from before there were any read a session without them.
+    if (json tiles = tiles_.saved(); !tiles.empty()) all["tiles"] = std::move(tiles);
+    return all;
 }
 
 std::shared_ptr<Intake> Overlays::intake(const Request& request) {
@@ -326,41 +327,26 @@ void Overlays::remove(const Request& request, const Respond& respond) {
         const auto overlay = find(request.parameters.at("id"));
         if (overlay == list_.end())
             return respond(error_response(404, "there is no such layer; it may have been removed"));
+        const std::string name = overlay->name;
         removed_ = std::move(*overlay);
         list_.erase(overlay);
         tell();
-        respond(json_response(
-            200, {{"done", fmt::format("layer \"{}\" is removed", removed_->name)}, {"created", nullptr}}));
+        respond(json_response(200, {{"done", fmt::format("layer \"{}\" is removed", name)}, {"created", nullptr}}));
     });
 }
 
 void Overlays::restore(const Request& request, const Respond& respond) {
     serve::change(session_, request, respond, [&](const std::string&) {
-        if (!removed_) return respond(error_response(409, "no layer has been removed"));
-        if (const Status room = has_room({*removed_}); !room) return respond(error_response(409, room.error().message));
-        std::vector<Overlay> again{std::move(*removed_)};
-        removed_.reset();
+        if (const auto* tile = std::get_if<TileAddress>(&removed_)) {
+            return lay_tiles(TileAddress(*tile), respond);
+        }
+        const auto* overlay = std::get_if<Overlay>(&removed_);
+        if (overlay == nullptr) return respond(error_response(409, "no layer has been removed"));
+        if (const Status room = has_room({*overlay}); !room) return respond(error_response(409, room.error().message));
+        std::vector<Overlay> again{*overlay};
+        removed_ = {};
         add(std::move(again), respond);
     });
-}
-
-void Overlays::tiles(const Respond& respond) const {
-    const scene::Scene& scene = *session_.scene();
-    json places = json::array();
-    if (!tiles_.empty()) {
-        const auto to_degrees = geo::to_wgs84(scene.crs);
-        if (!to_degrees) return respond(error_response(409, to_degrees.error().message));
-        const Extent extent = scene.terrain.elevation().geometry.extent();
-        for (int j = 0; j <= grid_steps; ++j) {
-            for (int i = 0; i <= grid_steps; ++i) {
-                const PlanPoint at = (*to_degrees)(
-                    {extent.x_min + i * extent.width() / grid_steps, extent.y_min + j * extent.height() / grid_steps});
-                places.push_back(at.x);
-                places.push_back(at.y);
-            }
-        }
-    }
-    respond(json_response(200, {{"addresses", tiles_}, {"steps", grid_steps}, {"degrees", std::move(places)}}));
 }
 
 }  // namespace talus::serve

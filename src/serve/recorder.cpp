@@ -14,6 +14,7 @@
 
 #include "core/try.hpp"
 #include "observe/map_names.hpp"
+#include "serve/library.hpp"
 #include "serve/site_archive.hpp"
 #include "session/json_text.hpp"
 
@@ -230,9 +231,15 @@ json without_people(json session) {
     return session;
 }
 
+/// A page in one file loads nothing from anywhere, and addresses of map tiles may hold somebody's key.
+json without_tiles(json about) {
+    about["tiles"] = json::array();
+    return about;
+}
+
 /// What concerns the session as a whole.
 Status record_session(Asker& asker, publish::Tape& tape) {
-    for (const char* question : {"scene", "orthophoto", "ensembles", "alerts", "overlays", "session/file"}) {
+    for (const char* question : {"scene", "orthophoto", "ensembles", "alerts"}) {
         TALUS_TRY(keep(asker, tape, question));
     }
     TALUS_ASSIGN(json session, asker.get_json("session"));
@@ -240,6 +247,14 @@ Status record_session(Asker& asker, publish::Tape& tape) {
     TALUS_ASSIGN(const Response terrain, asker.get("terrain", {{"max_cells", fmt::format("{}", mesh_cells)}}));
     if (terrain.status == 200) tape.add("terrain", terrain.type, *terrain.body);
     TALUS_ASSIGN(const json overlays, asker.get_json("overlays"));
+    tape.add("overlays", "application/json", to_text(without_tiles(overlays)));
+    if (overlays.at("tiles").empty()) {
+        TALUS_TRY(keep(asker, tape, "session/file"));
+    } else {
+        TALUS_ASSIGN(const Response file, asker.get("session/file"));
+        TALUS_ASSIGN(json saved, parse_json(*file.body, Library::most_session_values));
+        tape.add("session/file", "application/json", to_text(without_tiles(std::move(saved))));
+    }
     for (const json& overlay : overlays.at("overlays")) {
         const std::string path = "overlays/" + overlay.at("id").get<std::string>();
         TALUS_TRY(keep(asker, tape, path));
@@ -296,6 +311,7 @@ Result<Recorded> record(OpenSession& open, const RecordOptions& options, const S
             message["session"] = without_people(message["session"]);
             message["you"]["secret"] = "";
         }
+        if (message.at("type") == "overlays") message = without_tiles(std::move(message));
         // As it is now: the last message may be of a moment before the end.
         if (message.at("type") == "state") {
             TALUS_ASSIGN(const json now,

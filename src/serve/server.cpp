@@ -19,9 +19,9 @@
 #include "serve/api.hpp"
 #include "serve/connection.hpp"
 #include "serve/open_session.hpp"
-#include "serve/overlay.hpp"
 #include "serve/sharing.hpp"
 #include "serve/start.hpp"
+#include "serve/tile_addresses.hpp"
 
 namespace talus::serve {
 namespace {
@@ -51,16 +51,6 @@ std::string bracketed(const asio::ip::address& address) {
 /// An address that a browser on this machine can open.
 std::string host_for_links(const asio::ip::address& address) {
     return address.is_unspecified() ? "127.0.0.1" : bracketed(address);
-}
-
-/// Each once, with a space before it.
-std::string tile_origins(const std::vector<std::string>& addresses) {
-    std::string origins;
-    for (const std::string& address : addresses) {
-        const std::string origin = " " + origin_of(address);
-        if ((origins + " ").find(origin + " ") == std::string::npos) origins += origin;
-    }
-    return origins;
 }
 
 }  // namespace
@@ -181,7 +171,7 @@ void Server::Parts::listen_for(OpenSessionPtr open) {
         ServerContext{Access(options.tokens, bracketed(bound.address()), bound.port(), options.allowed_hosts),
                       make_start_api(start ? &*start : nullptr), std::move(open), Site(), options.patience,
                       ConnectionCounts(connections, per_address > 0 ? per_address : connections / 3), connections / 2,
-                      tile_origins(options.tiles)});
+                      options.tiles});
     const auto inner =
         bound.address().is_unspecified() ? tcp::endpoint(asio::ip::address_v4::loopback(), bound.port()) : bound;
     sharing.emplace(io, inner, [this](tcp::socket socket) {

@@ -40,7 +40,7 @@ Result<SavedScenario> read_scenario(const json& written) {
 
 }  // namespace
 
-json write_session(Scenarios& all, const std::string& name, const std::string& title, const json& overlays) {
+json write_session(Scenarios& all, const std::string& name, const std::string& title, const json& laid) {
     json scenarios = json::array();
     for (const std::string& letter : all.names()) {
         const int index = *all.find(letter);
@@ -48,8 +48,13 @@ json write_session(Scenarios& all, const std::string& name, const std::string& t
                              {"title", all.setup(index).value("name", "")},
                              {"journal", all.at(index).journal_json()}});
     }
-    return {{"talus_session", session_version}, {"name", name},        {"title", title}, {"saved_at", utc_now()},
-            {"scenarios", scenarios},           {"overlays", overlays}};
+    json session{{"talus_session", session_version},
+                 {"name", name},
+                 {"title", title},
+                 {"saved_at", utc_now()},
+                 {"scenarios", scenarios}};
+    session.update(laid);
+    return session;
 }
 
 Result<SessionFile> read_session(const std::string& text) {
@@ -61,7 +66,8 @@ Result<SessionFile> read_session(const std::string& text) {
         return Error{fmt::format("talus_session = {}: this program reads version {}", written["talus_session"].dump(),
                                  session_version)};
     }
-    TALUS_TRY(twin::check_keys(written, {"talus_session", "name", "title", "saved_at", "scenarios", "overlays"}));
+    TALUS_TRY(
+        twin::check_keys(written, {"talus_session", "name", "title", "saved_at", "scenarios", "overlays", "tiles"}));
     SessionFile file;
     TALUS_ASSIGN(file.name, needed_text(written, "name"));
     TALUS_ASSIGN(file.title, needed_text(written, "title"));
@@ -84,6 +90,7 @@ Result<SessionFile> read_session(const std::string& text) {
     if (file.scenarios[0].index != 0) return Error{"scenarios[0]: the first scenario must be A"};
     // Sessions did not always have them.
     TALUS_ASSIGN(file.overlays, read_saved_overlays(written.value("overlays", json())));
+    TALUS_ASSIGN(file.tiles, read_saved_tiles(written.value("tiles", json())));
     return Result<SessionFile>(std::move(file));
 }
 

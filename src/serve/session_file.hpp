@@ -8,6 +8,7 @@
 #include "core/result.hpp"
 #include "serve/open_session.hpp"
 #include "serve/overlay.hpp"
+#include "serve/tile_addresses.hpp"
 #include "twin/journal.hpp"
 
 namespace talus::serve {
@@ -24,11 +25,12 @@ struct SessionFile {
     std::string name, title;
     std::vector<SavedScenario> scenarios;  ///< the first is A
     std::vector<Overlay> overlays;
+    std::vector<TileAddress> tiles;  ///< that people added
 };
 
-/// As JSON, from the thread that owns the scenarios. `title`: of the scene; `overlays`: as Overlays::saved.
+/// As JSON, from the thread that owns the scenarios. `title`: of the scene; `laid`: as Overlays::saved.
 [[nodiscard]] nlohmann::json write_session(Scenarios& all, const std::string& name, const std::string& title,
-                                           const nlohmann::json& overlays);
+                                           const nlohmann::json& laid);
 
 /// Errors name scenario, key and value; scenarios of several scenes; no scenario A.
 [[nodiscard]] Result<SessionFile> read_session(const std::string& text);

@@ -200,7 +200,7 @@ void Start::work(const Wanted& wanted) {
         auto loaded = load(wanted);
         if (!loaded) return end(loaded.error().message);
         auto made = OpenSession::open(host_.thread, loaded->scene, loaded->options, std::move(loaded->scenarios),
-                                      std::move(loaded->overlays));
+                                      std::move(loaded->overlays), loaded->tiles);
         if (!made) return end(made.error().message);
         if (stop_) {
             OpenSession::retire(host_.thread, std::move(*made));
@@ -250,6 +250,7 @@ Result<Start::Loaded> Start::load(const Wanted& wanted) {
                      *file, loaded.scene, [this](const std::string& what, double share) { return say(what, share); },
                      loaded.notes));
     loaded.overlays = std::move(file->overlays);
+    loaded.tiles = std::move(file->tiles);
     return Result<Loaded>(std::move(loaded));
 }
 

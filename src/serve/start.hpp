@@ -77,6 +77,7 @@ class Start {
         std::vector<OpeningScenario> scenarios;
         std::vector<std::string> notes;
         std::vector<Overlay> overlays;
+        std::vector<TileAddress> tiles;
     };
     /// What one of the three names is.
     [[nodiscard]] Result<Wanted> find(const std::string& scene, const std::string& session,

@@ -30,6 +30,7 @@ struct DepthAveragedRun;
 struct Journal;
 struct JournalEntry;
 class RecordedFlow;
+struct SceneCopy;
 
 /// "ready", "at_rest", "ended", "fault".
 [[nodiscard]] std::string_view phase_name(run::RunPhase phase);
@@ -160,10 +161,10 @@ class Scenario {
 
     /// The scene with the present setup, and the result of the run so far.
     [[nodiscard]] std::function<std::pair<scene::Scene, run::RunResult>()> outcome() const;
-    /// As scene_text_with(), of the present setup. `file`, `overrides`: of the scene.
-    [[nodiscard]] std::function<Result<std::string>(const std::filesystem::path& file,
-                                                    const std::vector<std::string>& overrides)>
-    scene_text() const;
+    /// As scene_copy(), of the present setup. `file`, `overrides`: of the scene.
+    [[nodiscard]] std::function<Result<SceneCopy>(const std::filesystem::path& file,
+                                                  const std::vector<std::string>& overrides)>
+    copy_of_scene() const;
 
     // The depth-averaged model of the present setup, beside this run (depth_averaged.hpp).
 

@@ -109,11 +109,11 @@ std::function<std::pair<scene::Scene, run::RunResult>()> Scenario::outcome() con
     return [outcome = parts_->outcome()] { return outcome; };
 }
 
-std::function<Result<std::string>(const std::filesystem::path&, const std::vector<std::string>&)> Scenario::scene_text()
-    const {
+std::function<Result<SceneCopy>(const std::filesystem::path&, const std::vector<std::string>&)>
+Scenario::copy_of_scene() const {
     return [setup = parts_->setup(), scene = parts_->scene](
-               const std::filesystem::path& file, const std::vector<std::string>& overrides) -> Result<std::string> {
-        return scene_text_with(file, overrides, setup, *scene);
+               const std::filesystem::path& file, const std::vector<std::string>& overrides) -> Result<SceneCopy> {
+        return scene_copy(file, overrides, setup, *scene);
     };
 }
 

@@ -127,6 +127,7 @@ TEST_F(OpenApi, every_route_answers_as_described) {
         {"/api/scenarios/{s}/actions", {{"action", "step"}}},
         {"/api/control", {{"do", "request"}}},
         {"/api/share", {{"address", "192.0.2.1"}}},
+        {"/api/tiles", {{"address", "https://tile.example.org/{z}/{x}/{y}.png"}}},
         {"/api/scenarios", {{"copy_of", "A"}}},
         {"/api/depth_averaged", {{"on", true}}},
         {"/api/scenarios/{s}/flow", {{"formats", {"gltf"}}}},
@@ -162,6 +163,7 @@ TEST_F(OpenApi, every_route_answers_as_described) {
                                                 {"PUT /api/overlays", 400},   // an empty file
                                                 {"POST /api/overlays", 409},  // nothing to bring back
                                                 {"/api/overlays/{id}", 404},
+                                                {"/api/tiles/{id}", 404},
                                                 {"/api/overlays/{id}/picture", 404},
                                                 {"/api/scenarios/{s}/depth_averaged/layers/{name}", 404},
                                                 {"/api/scenarios/{s}/depth_averaged/comparison", 404}};  // off

@@ -4,6 +4,8 @@
 
 #include <gmock/gmock.h>
 
+#include "core/hash.hpp"
+#include "run/run_scene.hpp"
 #include "scene/bundle.hpp"
 #include "scene/scene.hpp"
 #include "serve/alerts_fixture.hpp"
@@ -74,6 +76,83 @@ TEST_F(TablesTest, the_archive_of_the_scene_has_them_and_loads) {
     EXPECT_EQ(again->spec.alarms.back().message, "Go.");
     EXPECT_EQ(again->gauges.back().name, "ford");
     EXPECT_EQ(again->spec.solver.end_time, 1000) << "with what the command line gave";
+}
+
+TEST_F(TablesTest, the_archive_of_the_scene_runs_to_the_state_of_the_restarted_scenario) {
+    start({"solver.end_time_s=1.5"});
+    const auto hash_of_run = [&] {
+        EXPECT_EQ(act({{"action", "restart"}}).status, 200);
+        EXPECT_EQ(act({{"action", "set_speed"}, {"factor", nullptr}}).status, 200);
+        EXPECT_EQ(act({{"action", "run"}}).status, 200);
+        json state;
+        EXPECT_TRUE(eventually([&] {
+            state = as_viewer().get("/api/scenarios/A/state").json();
+            return state["status"] == "ended";
+        }));
+        return state.value("hash", "");
+    };
+    const std::string plain = hash_of_run();
+    const json changes[] = {
+        {{"action", "put_barrier"},
+         {"name", "Dam"},
+         {"line", {{824195.3, 825080}, {824194.7, 825120}}},
+         {"height_m", 2},
+         {"thickness_m", 1},
+         {"openings", {{{"position_m", 20}, {"width_m", 4}, {"sill_height_m", 0.5}}}}},
+        {{"action", "put_barrier"}, {"name", "Dam"}, {"line", {{824140, 825080}, {824140, 825120}}}, {"height_m", 3}},
+        {{"action", "put_building"},
+         {"name", "Barn"},
+         {"polygon", {{824197, 825101}, {824199.1, 825101}, {824199.1, 825104.3}, {824197, 825104.3}}},
+         {"height_m", 4}},
+        {{"action", "put_zone"},
+         {"name", "Forest"},
+         {"polygon", {{824180, 825080}, {824210, 825080}, {824210, 825120}, {824180, 825120}}},
+         {"friction_coefficient", 0.35}},
+        {{"action", "set_parameter"}, {"key", "material.friction_coefficient"}, {"value", 0.17}},
+        {{"action", "put_alarm"},
+         {"values", {{"name", "hit"}, {"structure", "Barn"}, {"distance_m", 9}, {"message", "Out."}}}},
+    };
+    for (const json& change : changes) {
+        const Answer answer = act(change);
+        ASSERT_EQ(answer.status, 200) << answer.body;
+    }
+    const std::string wanted = hash_of_run();
+    EXPECT_NE(wanted, plain) << "the changes must matter";
+
+    const Answer answer = as_viewer().get("/api/scenarios/A/exports/scene.zip");
+    ASSERT_EQ(answer.status, 200) << answer.body;
+    const auto archive = scene_.folder() / "drawn.zip";
+    std::ofstream(archive, std::ios::binary) << answer.body;
+    const auto unpacked = scene::unpack_bundle(archive, scene_.folder() / "drawn", {}, foreign_reader());
+    ASSERT_TRUE(unpacked) << unpacked.error().message;
+    const auto again = scene::load_scene(unpacked->scene);
+    ASSERT_TRUE(again) << again.error().message;
+    EXPECT_EQ(again->buildings.size(), 4U) << "that of the scene, the barn and two barriers";
+    EXPECT_EQ(again->spec.alarms.back().structure, "Barn");
+    const auto result = run::run_scene(*again, {});
+    ASSERT_TRUE(result) << result.error().message;
+    EXPECT_EQ(to_hex(result->hash), wanted);
+}
+
+TEST_F(TablesTest, the_archive_of_the_scene_has_no_structure_that_was_removed_and_says_what_it_lacks) {
+    ASSERT_EQ(act({{"action", "remove_building"}, {"id", "building-1"}}).status, 200);
+    ASSERT_EQ(act({{"action", "put_release"},
+                   {"name", "Second"},
+                   {"polygon", {{824230, 825090}, {824240, 825090}, {824240, 825100}}},
+                   {"thickness_m", 0.5}})
+                  .status,
+              200);
+    const Answer answer = as_viewer().get("/api/scenarios/A/exports/scene.zip");
+    ASSERT_EQ(answer.status, 200) << answer.body;
+    const auto archive = scene_.folder() / "removed.zip";
+    std::ofstream(archive, std::ios::binary) << answer.body;
+    const auto unpacked = scene::unpack_bundle(archive, scene_.folder() / "removed", {}, foreign_reader());
+    ASSERT_TRUE(unpacked) << unpacked.error().message;
+    const auto again = scene::load_scene(unpacked->scene);
+    ASSERT_TRUE(again) << again.error().message;
+    EXPECT_TRUE(again->buildings.empty());
+    EXPECT_EQ(again->releases.size(), 1U);
+    EXPECT_THAT(read_text(unpacked->scene), HasSubstr("Left out: releases"));
 }
 
 TEST_F(TablesTest, a_calibration_fits_those_of_scenario_A) {

@@ -96,7 +96,7 @@ function buildPage(page: HTMLElement, twin: Twin): void {
   const follow = new Follow(twin, stage);
 
   const probes = new Probes(twin);
-  const overlays = new OverlaysPanel(twin, stage, new OverlayLayers(twin, stage));
+  const overlays = new OverlaysPanel(twin, stage, new OverlayLayers(twin, stage), () => presentView(twin, stage));
   const observed = new ObservedTable(twin);
   const compare = new ComparePanel(twin, picture, observed);
   const secondModel = new DepthAveragedPanel(twin);
@@ -115,6 +115,9 @@ function buildPage(page: HTMLElement, twin: Twin): void {
   ]);
   twin.probes.watch((list) => {
     if (list.length > 0) readings.show("points");
+  });
+  twin.tileAddress.watch((address) => {
+    if (address !== null) readings.show("layers");
   });
   watchAll([twin.shown], () => readings.offer("compare", twin.shown.value.length > 1));
   watchAll([twin.alerts, twin.you, ...twin.every("setup")], () => {

@@ -1,6 +1,6 @@
 import { describe, expect, it } from "vitest";
 import type { Overlay, OverlayData, OverlayFeature } from "../src/protocol/messages";
-import { boundsOf, featureAt, groupFiles, listKey, mercator, nameAt, seenAs, styleOf, tileRange, tileUrl, withOwn, withoutOwn } from "../src/state/overlays";
+import { boundsOf, featureAt, groupFiles, listKey, mayLoad, mercator, nameAt, seenAs, styleOf, tileRange, tileUrl, withOwn, withoutOwn, withoutScheme } from "../src/state/overlays";
 
 const feature = (kind: OverlayFeature["kind"], parts: number[][], name = "", style = -1): OverlayFeature => ({ kind, parts, name, attributes: {}, style });
 const area = feature("area", [[0, 0, 100, 0, 100, 100, 0, 100], [40, 40, 60, 40, 60, 60, 40, 60]], "parcel");
@@ -90,5 +90,17 @@ describe("map tiles", () => {
   it("have addresses in either notation", () => {
     expect(tileUrl("https://a/{z}/{x}/{y}.png", 3, 4, 5)).toBe("https://a/3/4/5.png");
     expect(tileUrl("https://a/wmts?M={TileMatrix}&R={TileRow}&C={TileCol}", 3, 4, 5)).toBe("https://a/wmts?M=3&R=5&C=4");
+  });
+  it("may be loaded by this page from the hosts that the server knew when it sent the page, and from no other", () => {
+    const atLoad = ["https://a.example.org/{z}/{x}/{y}.png", "http://127.0.0.1:8080/wmts?M={TileMatrix}&R={TileRow}&C={TileCol}"];
+    expect(mayLoad("https://a.example.org/other/{z}/{x}/{y}.jpg", atLoad)).toBe(true);
+    expect(mayLoad("http://127.0.0.1:8080/{z}/{x}/{y}", atLoad)).toBe(true);
+    expect(mayLoad("http://127.0.0.1:8081/{z}/{x}/{y}", atLoad)).toBe(false);
+    expect(mayLoad("http://a.example.org/{z}/{x}/{y}.png", atLoad)).toBe(false);
+    expect(mayLoad("https://a.example.org.evil.net/{z}/{x}/{y}.png", atLoad)).toBe(false);
+    expect(mayLoad(atLoad[0], [])).toBe(false);
+  });
+  it("have addresses that people read without the scheme", () => {
+    expect(withoutScheme("https://a.example.org/{z}/{x}/{y}.png")).toBe("a.example.org/{z}/{x}/{y}.png");
   });
 });

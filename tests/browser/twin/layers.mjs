@@ -126,19 +126,19 @@ export async function testLayers(run) {
     await adds("Lots", "reddish", 0.02);
     await run.shot(ada, "layers-natural");
   });
+  const blue = Buffer.from(await bo.evaluate(() => {
+    const canvas = document.createElement("canvas");
+    canvas.width = canvas.height = 256;
+    const context = canvas.getContext("2d");
+    context.fillStyle = "#0000ff";
+    context.fillRect(0, 0, 256, 256);
+    return canvas.toDataURL().split(",")[1];
+  }), "base64");
   await run.check("map tiles are off until somebody chooses them, are fetched by that browser alone, and go again", async () => {
     const tiles = () => run.requests.filter((url) => url.startsWith("https://tile.example.org/"));
     assert.equal(tiles().length, 0);
-    const blue = await bo.evaluate(() => {
-      const canvas = document.createElement("canvas");
-      canvas.width = canvas.height = 256;
-      const context = canvas.getContext("2d");
-      context.fillStyle = "#0000ff";
-      context.fillRect(0, 0, 256, 256);
-      return canvas.toDataURL().split(",")[1];
-    });
     for (const page of pages) {
-      await page.route("https://tile.example.org/**", (route) => route.fulfill({ contentType: "image/png", headers: { "access-control-allow-origin": "*" }, body: Buffer.from(blue, "base64") }));
+      await page.route("https://tile.example.org/**", (route) => route.fulfill({ contentType: "image/png", headers: { "access-control-allow-origin": "*" }, body: blue }));
     }
     assert.match(await bo.textContent(".tiles"), /fetched by your browser from this address/);
     await bo.selectOption("[aria-label='Background map']", tile);
@@ -151,6 +151,43 @@ export async function testLayers(run) {
     await until(() => run.colours(bo, clip), ({ bluish }) => bluish < 0.1, "the ground again");
     assert.equal(tiles().length, asked, "nobody else asked");
     run.requests = run.requests.filter((url) => !url.startsWith("https://tile.example.org/"));
+  });
+  await run.check("an address typed in the page is offered to everybody, and shown once a page is loaded again by who wants it", async () => {
+    const typed = "https://maps.example.net/wmts?TILEMATRIX={TileMatrix}&TILEROW={TileRow}&TILECOL={TileCol}";
+    const asked = () => run.requests.filter((url) => url.startsWith("https://maps.example.net/"));
+    const field = ada.locator("[aria-label='Address of map tiles']");
+    await field.fill("https://maps.example.net/wmts");
+    await ada.click("button:has-text('Add address')");
+    await ada.waitForSelector(".toast.error:has-text('has no {z}, {x} and {y}')");
+    await field.fill("");
+    await field.pressSequentially(typed);
+    await field.press("Enter");
+    for (const page of pages) await until(() => page.locator("[aria-label='Background map'] option").count(), (count) => count === 3, "the address in the list");
+    assert.equal(await field.inputValue(), "");
+    assert.ok(!(await bo.isVisible("[aria-label='Address of map tiles']")), "a viewer adds none");
+    assert.ok(await bo.isDisabled("[aria-label^='Remove the map maps.example.net']"), "and removes none");
+    assert.match(await bo.textContent(".tiles"), /by Ada/);
+    await bo.route("https://maps.example.net/**", (route) => route.fulfill({ contentType: "image/png", headers: { "access-control-allow-origin": "*" }, body: blue }));
+    await bo.selectOption("[aria-label='Background map']", typed);
+    await bo.waitForSelector("button:has-text('Reload and show')");
+    assert.equal(asked().length, 0, "this page may not ask yet");
+    await bo.click("button:has-text('Reload and show')");
+    await until(() => asked().length, (count) => count > 0, "tiles");
+    const clip = await viewClip(bo);
+    await until(() => run.colours(bo, clip), ({ bluish }) => bluish > 0.3, "blue ground");
+    assert.equal(await bo.inputValue("[aria-label='Background map']"), typed);
+    assert.ok(await bo.isVisible(".tiles"), "the tab of layers is open");
+    assert.ok(asked().every((url) => /TILEMATRIX=\d+&TILEROW=\d+&TILECOL=\d+$/.test(url)), asked()[0]);
+    await run.shot(bo, "layers-typed-tiles");
+    await ada.click("[aria-label^='Remove the map maps.example.net']");
+    await until(() => run.colours(bo, clip), ({ bluish }) => bluish < 0.1, "the ground again");
+    await ada.click("text=Undo removal of maps.example.net");
+    await until(() => bo.locator("[aria-label='Background map'] option").count(), (count) => count === 3, "it is back");
+    assert.equal(await bo.inputValue("[aria-label='Background map']"), "", "and off");
+    await bo.reload();
+    await until(() => bo.locator("[aria-label='Background map'] option").count(), (count) => count === 3, "the page again");
+    assert.equal(await bo.inputValue("[aria-label='Background map']"), "", "a page that nobody asked to show it does not");
+    run.requests = run.requests.filter((url) => !url.startsWith("https://maps.example.net/"));
   });
   for (const page of pages) await page.context().close();
   await own.stop();

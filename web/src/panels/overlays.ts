@@ -9,6 +9,7 @@ import type { Twin } from "../state/twin";
 import { zip } from "../state/zip";
 import { dialog, openDialog } from "../ui/dialog";
 import { button, h } from "../ui/dom";
+import { tilesPanel } from "./tiles";
 
 const accepted = ".gpkg,.geojson,.json,.zip,.shp,.shx,.dbf,.prj,.cpg,.fgb,.kml,.tif,.tiff,.tfw,.png,.pgw,.jpg,.jpeg,.jgw,.wld";
 const nearest_px = 8;
@@ -29,7 +30,7 @@ export class OverlaysPanel {
   private listed = "";
   private busy = false;
 
-  constructor(private readonly twin: Twin, private readonly stage: Stage, private readonly layers: OverlayLayers) {
+  constructor(private readonly twin: Twin, private readonly stage: Stage, private readonly layers: OverlayLayers, presentView: () => string) {
     const chooser = h("input", { type: "file", multiple: true, accept: accepted, hidden: true, "aria-label": "Files of the layer", onchange: () => {
       void this.add([...(chooser.files ?? [])]);
       chooser.value = "";
@@ -48,7 +49,7 @@ export class OverlaysPanel {
       undo.querySelector("span")?.replaceChildren(`Undo removal of ${overlays?.removed ?? ""}`);
       this.fill();
     });
-    this.element = h("div", { class: "overlays-panel" }, h("div", { class: "group-head" }, h("h3", {}, "Layers"), add, chooser), this.progress, hint, this.list, undo, this.tiles());
+    this.element = h("div", { class: "overlays-panel" }, h("div", { class: "group-head" }, h("h3", {}, "Layers"), add, chooser), this.progress, hint, this.list, undo, tilesPanel(twin, presentView));
     this.listen();
   }
 
@@ -180,25 +181,5 @@ export class OverlaysPanel {
     const rows = Object.entries(feature.attributes).flatMap(([key, value]) => [h("dt", {}, key), h("dd", {}, typeof value === "number" ? String(value) : value)]);
     this.card.replaceChildren(h("div", { class: "row" }, h("b", { class: "grow" }, feature.name || overlay.name), button("Close", { icon: "close", bare: true, class: "bare quiet small", onclick: () => this.tellOf(null) })),
       feature.name ? h("small", { class: "muted" }, overlay.name) : "", h("dl", {}, ...rows));
-  }
-
-  /** Map tiles, where the program was started with addresses of some. */
-  private tiles(): HTMLElement {
-    const { twin } = this;
-    const choice = h("select", { "aria-label": "Background map", onchange: () => (twin.tileAddress.value = choice.value || null) }, h("option", { value: "" }, "No background map"));
-    const whole = h("div", { class: "tiles", hidden: true }, h("label", { class: "row" }, "Background", choice),
-      h("p", { class: "hint" }, "Tiles are fetched by your browser from this address and shown only to you; the provider can tell where the terrain is."));
-    twin.tileAddress.watch((address) => (choice.value = address ?? ""));
-    let asked = false;
-    twin.overlays.watch((overlays) => {
-      if (!overlays?.tiles || asked) return;
-      asked = true;
-      void twin.attempt(async () => {
-        const { addresses } = await twin.api.tiles();
-        choice.append(...addresses.map((address) => h("option", { value: address, title: address }, address.replace(/^https?:\/\//, ""))));
-        whole.hidden = false;
-      }).then((done) => (asked = done));
-    });
-    return whole;
   }
 }

@@ -117,6 +117,8 @@ export class Api {
   overlay = (id: string): Promise<OverlayData> => this.json(`overlays/${id}`);
   overlayPicture = (id: string): Promise<Blob> => this.blob(`overlays/${id}/picture`);
   tiles = (): Promise<Tiles> => this.json("tiles");
+  addTiles = (address: string): Promise<Done> => this.told("POST", "tiles", { address });
+  removeTiles = (id: string): Promise<Done> => this.told("DELETE", `tiles/${id}`);
   addOverlay = (file: File, onshare: (share: number) => void): Promise<Done> => this.upload(`overlays?name=${encodeURIComponent(file.name)}`, file, onshare);
   changeOverlay = (id: string, wanted: WantedOverlay): Promise<Done> => this.told("POST", `overlays/${id}`, wanted);
   removeOverlay = (id: string): Promise<Done> => this.told("DELETE", `overlays/${id}`);

@@ -1417,10 +1417,10 @@ export interface Overlay {
 export interface Overlays {
   /** From bottom to top. */
   overlays: Overlay[];
-  /** Name of the one that was removed last, which can come back. */
+  /** Name of the one that was removed last, or the host of its map tiles, which can come back. */
   removed: string | null;
-  /** Whether GET /api/tiles has addresses. */
-  tiles: boolean;
+  /** Of map tiles that can be chosen as background. */
+  tiles: TileAddress[];
   /** That may still come. */
   bytes_left: number;
 }
@@ -1481,6 +1481,30 @@ export interface OverlayData {
   styles: OverlayStyle[];
   /** In the order of the file. */
   features: OverlayFeature[];
+}
+
+/** An address of map tiles that a browser may load. */
+export interface TileAddress {
+  /** In routes. */
+  id: string;
+  /** With {z}, {x} and {y}, or {TileMatrix}, {TileCol} and {TileRow}. */
+  address: string;
+  /** Who added it; empty: the program was started with it. */
+  by: string;
+}
+
+/** An address of map tiles, of a session file. */
+export interface SavedTiles {
+  /** As in TileAddress. */
+  address: string;
+  /** Who added it. */
+  by: string;
+}
+
+/** Body of POST /api/tiles. */
+export interface WantedTiles {
+  /** Up to 500 bytes: https or http, with {z}, {x} and {y}, or {TileMatrix}, {TileCol} and {TileRow} of a WMTS in Web Mercator. */
+  address: string;
 }
 
 /** Map tiles in Web Mercator that a browser may load. */

@@ -1,5 +1,5 @@
 // Made from src/serve/protocol.json: edit that; docs/protocol.md tells how this is made again.
-import type { Journal, Parameter, Point, Role, SavedOverlay, VariedKey } from "./messages";
+import type { Journal, Parameter, Point, Role, SavedOverlay, SavedTiles, VariedKey } from "./messages";
 
 /** A scene that can be opened. */
 export interface KnownScene {
@@ -55,6 +55,8 @@ export interface SessionFile {
   scenarios: SavedScenario[];
   /** Layers over the terrain, from bottom to top. */
   overlays?: SavedOverlay[];
+  /** Addresses of map tiles that people added. */
+  tiles?: SavedTiles[];
 }
 
 /** Body of POST /api/sessions. */

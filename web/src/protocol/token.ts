@@ -22,6 +22,12 @@ export function takeLinkedView(): string | null {
   return view;
 }
 
+/** Loads the page again, with this view. */
+export function reloadWith(view: string): void {
+  sessionStorage.setItem(viewKey, view);
+  location.reload();
+}
+
 /** view: empty, or what it opens besides the session. */
 export function linkWith(token: string, view = ""): string {
   return `${location.origin}${location.pathname}#token=${token}${view === "" ? "" : `&view=${view}`}`;

@@ -111,6 +111,13 @@ export function mercator(longitude_deg: number, latitude_deg: number): Point {
   const s = Math.sin((Math.min(85.0511, Math.max(-85.0511, latitude_deg)) * Math.PI) / 180);
   return [longitude_deg / 360 + 0.5, 0.5 - Math.log((1 + s) / (1 - s)) / (4 * Math.PI)];
 }
+/** "https://tile.example.org", which a page's policy names. */
+export const originOf = (address: string): string => /^https?:\/\/[^/]*/.exec(address)?.[0] ?? address;
+/** A page may load from the addresses that the server had when it sent the page, and from no other host. */
+export const mayLoad = (address: string, atLoad: readonly string[]): boolean => atLoad.some((one) => originOf(one) === originOf(address));
+/** As people read it. */
+export const withoutScheme = (address: string): string => address.replace(/^https?:\/\//, "");
+
 export interface TileRange { zoom: number; west: number; north: number; columns: number; rows: number }
 /** The finest tiles of which at most so many cover all places. */
 export function tileRange(places: readonly Point[], most: number, deepest = 19): TileRange {

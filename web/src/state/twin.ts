@@ -95,6 +95,8 @@ export class Twin {
   readonly ownOverlays = new Cell<OwnLooks>(new Map());
   /** Address of map tiles below the layers, of this browser alone; null: none. */
   readonly tileAddress = new Cell<string | null>(null);
+  /** Addresses that the server had when this page was loaded: its policy allows no other hosts. null: not known yet. */
+  tilesAtLoad: readonly string[] | null = null;
   readonly tool = new Cell<Tool>({ kind: "none" });
   readonly selection = new Cell<Selection | null>(null);
   /** Thickness, height and other initial values of the next drawn shape. */
@@ -342,6 +344,7 @@ export class Twin {
         this.hearAlerts(message);
         break;
       case "overlays":
+        this.tilesAtLoad ??= message.tiles.map(({ address }) => address);
         this.overlays.value = message;
         break;
       case "depth_averaged":
