@@ -246,6 +246,40 @@ TEST(EvolvingPorePressure, is_that_of_the_processor_on_a_device) {
     EXPECT_NE(mean_a, 0);
 }
 
+/// Debris in a pit, asleep after 4 s if it may be: the share that is.
+double asleep_in_pit(const params::MaterialSpec& material) {
+    const terrain::Terrain terrain = testing::terrain_of(
+        20, 20, 1, [](double x, double y) { return std::max(std::abs(x - 10), std::abs(y - 10)) < 2.6 ? 0 : 4; });
+    Simulation pit = testing::simulate(material, {}, terrain,
+                                       {testing::block(terrain, testing::rectangle(7.6, 7.6, 12.4, 12.4), 1.6)}, 0.5);
+    while (pit.summary().time < 4) {
+        if (!pit.advance()) return -1;
+    }
+    return 1 - static_cast<double>(pit.summary().awake) / pit.summary().count;
+}
+
+TEST(EvolvingPorePressure, keeps_debris_awake_until_it_is_in_balance) {
+    params::MaterialSpec material = wet_soil();
+    material.pore_pressure_ratio = 0.7;
+    material.permeability = 1e-14;
+    EXPECT_EQ(asleep_in_pit(material), 0) << "its pressure has hardly fallen";
+    material.permeability = 1e-5;
+    EXPECT_GT(asleep_in_pit(material), 0.3) << "it has drained";
+    material.pore_pressure = params::PorePressure::prescribed;
+    EXPECT_GT(asleep_in_pit(material), 0.3) << "its pressure stays as it is";
+}
+
+TEST(PorePressure, is_in_balance_within_a_hundredth_of_hydrostatic) {
+    const EvolvingPressure law = evolving_pressure_of(wet_soil());
+    for (const double fraction : {0.5, 0.62, 0.7}) {
+        const double rest = hydrostatic(law, fraction);
+        EXPECT_TRUE(in_balance(law, soil(fraction, rest, 1)));
+        EXPECT_TRUE(in_balance(law, soil(fraction, rest + 0.009, 1)));
+        EXPECT_FALSE(in_balance(law, soil(fraction, rest + 0.011, 1)));
+        EXPECT_FALSE(in_balance(law, soil(fraction, rest - 0.011, 1)));
+    }
+}
+
 TEST(EvolvingPorePressure, goes_on_from_a_saved_run) {
     Simulation run = layer(0.6), restored = layer(0.6);
     for (int k = 0; k < 20; ++k) ASSERT_TRUE(run.advance());

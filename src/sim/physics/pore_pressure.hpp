@@ -54,6 +54,17 @@ struct Soil {
     return {static_cast<float>(fraction), static_cast<float>(ratio >= 0 ? ratio : soil.fluid_density / bulk), 0, 0};
 }
 
+inline constexpr double balanced = 0.01;  ///< of lambda, from hydrostatic: friction then hardly changes any more
+
+/// Whether the pore pressure is that of water at rest.
+template <class Real>
+[[nodiscard]] TALUS_DEVICE auto in_balance(const EvolvingPressure& law, const Soil<Real>& soil) {
+    const Real fluid(law.fluid_density);
+    const Real density = fluid + Real(law.grain_density - law.fluid_density) * soil.solid_fraction;
+    const Real excess = soil.pressure_ratio - fluid / density;
+    return excess * excess < Real(balanced * balanced);
+}
+
 /// What multiplies the friction of dry debris: (1 - lambda) tan(phi + psi) / tan phi.
 template <class Real>
 [[nodiscard]] TALUS_DEVICE double friction_share(const Soil<Real>& soil, double friction) {

@@ -111,7 +111,8 @@ TALUS_INLINE void apply_viscosity(const At& at, const PairKernel<Smoothing>& ker
 }
 
 /// Debris that has hardly moved for the rest duration sleeps: it keeps its position and pressure until something moves
-/// beside it. Debris against walls stays awake, since the forces on them are measured.
+/// beside it. Debris against walls stays awake, since the forces on them are measured; so does debris whose pore
+/// pressure still changes, since it may be creeping towards failure.
 template <class At>
 TALUS_INLINE void update_sleep(const At& at) {
     using Real = typename At::Real;
@@ -121,7 +122,10 @@ TALUS_INLINE void update_sleep(const At& at) {
     const Real still = select(both(moves, square < Real(at.step().sleep_square)),
                               at.still_time() + Real(at.step().time_step), Real(0));
     at.set_still_time(still);
-    const auto sleeps = both(moves, still > Real(at.step().rest_duration));
+    auto sleeps = both(moves, still > Real(at.step().rest_duration));
+    if (at.model().evolving_pressure.on && any(sleeps)) {
+        sleeps = both(sleeps, in_balance(at.model().evolving_pressure, at.soil()));
+    }
     if (any(sleeps)) at.put_to_sleep(sleeps);
     const auto wakes = both(moves, square > Real(at.step().wake_square));
     if (any(wakes)) at.wake_neighbours(wakes);
