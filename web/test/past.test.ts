@@ -28,9 +28,15 @@ describe("what was known at an earlier time", () => {
     const past = stateAt(now, series, 0.21);
     expect(past).toMatchObject({ time_s: 0.21, volume_moving_m3: 20, volume_held_m3: 20, volume_entrained_m3: 4, volume_left_m3: 3, front_chainage_m: 2, front_velocity_mps: 7 });
     expect(stateAt(now, series, null)).toBe(now);
-    expect(stateAt(now, null, 0.2)).toBe(now);
+  });
+  it("is that of the first row at the beginning, with no front yet", () => {
+    expect(stateAt(now, series, 0)).toMatchObject({ time_s: 0, volume_moving_m3: 0, volume_held_m3: 40, front_chainage_m: null, front_velocity_mps: null });
+  });
+  it("is not that of the end while the series is still on its way", () => {
+    expect(stateAt(now, null, 0)).toBeNull();
+    expect(stateAt(now, null, null)).toBe(now);
   });
   it("tells no front velocity when the front has long stood still", () => {
-    expect(stateAt(now, series, 5).front_velocity_mps).toBeNull();
+    expect(stateAt(now, series, 5)?.front_velocity_mps).toBeNull();
   });
 });

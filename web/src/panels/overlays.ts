@@ -43,8 +43,8 @@ export class OverlaysPanel {
       const overlays = twin.overlays.value;
       add.disabled = hindrance !== null;
       add.title = hindrance ?? "Add roads, parcels, evacuation routes, geology or a map from files";
-      hint.hidden = (overlays?.overlays.length ?? 0) > 0;
-      undo.hidden = overlays === null || overlays.removed === null;
+      hint.hidden = !twin.can.server || (overlays?.overlays.length ?? 0) > 0;
+      undo.hidden = !twin.can.server || overlays === null || overlays.removed === null;
       undo.disabled = hindrance !== null;
       undo.querySelector("span")?.replaceChildren(`Undo removal of ${overlays?.removed ?? ""}`);
       this.fill();

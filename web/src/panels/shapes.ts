@@ -11,13 +11,14 @@ import { button, h } from "../ui/dom";
 import { draftBox } from "./draft_box";
 import { showEditor } from "./shape_editor";
 
-const words: Record<Shape, { title: string; empty: string }> = {
-  release: { title: "Releases", empty: "No release. Draw one, then trigger it to start its debris." },
-  barrier: { title: "Barriers", empty: "No barrier. Draw a line across the path to hold debris back." },
-  building: { title: "Buildings", empty: "No building." },
-  zone: { title: "Zones", empty: "No zone. Draw one where ground resistance differs, such as a forest." },
-  bed: { title: "Beds", empty: "No bed. Draw one where debris can entrain loose material." },
-  inflow: { title: "Inflows", empty: "No inflow. Draw one where debris enters during the run." },
+/** invitation: where something can be drawn; a recording cannot be changed. */
+const words: Record<Shape, { title: string; empty: string; invitation: string }> = {
+  release: { title: "Releases", empty: "No release.", invitation: " Draw one, then trigger it to start its debris." },
+  barrier: { title: "Barriers", empty: "No barrier.", invitation: " Draw a line across the path to hold debris back." },
+  building: { title: "Buildings", empty: "No building.", invitation: "" },
+  zone: { title: "Zones", empty: "No zone.", invitation: " Draw one where ground resistance differs, such as a forest." },
+  bed: { title: "Beds", empty: "No bed.", invitation: " Draw one where debris can entrain loose material." },
+  inflow: { title: "Inflows", empty: "No inflow.", invitation: " Draw one where debris enters during the run." },
 };
 /** Longer ones (the houses of a village) are picked in the view. */
 const longestList = 6;
@@ -70,7 +71,7 @@ export function shapeSection(twin: Twin, drawing: Drawing, shape: Shape): HTMLEl
       if (shown.length < items.length) {
         list.append(h("li", { class: "hint" }, `${items.length - shown.length} from the scene: click one in the view to select it.`));
       }
-      if (items.length === 0) list.append(h("li", { class: "hint" }, word.empty));
+      if (items.length === 0) list.append(h("li", { class: "hint" }, twin.can.change ? word.empty + word.invitation : word.empty));
       if (held) list.querySelector<HTMLElement>(`[data-item="${CSS.escape(held)}"]`)?.focus();
     }
     const opens = (drafting.hidden && isDrawing()) || (chosen !== null && chosen !== before);

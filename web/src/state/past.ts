@@ -28,11 +28,13 @@ export function seriesUntil(series: Series | null, time_s: number | null): Serie
 /** The front counts as moving for this time after reaching a new chainage, as in the server. */
 const lately_s = 1;
 
-/** The state at a time, from the row of the series at or before it; values without a series remain current. */
-export function stateAt(state: State, series: Series | null, time_s: number | null): State {
-  const past = time_s === null ? null : seriesUntil(series, time_s);
-  const times = past?.time["time_s"] ?? [];
-  if (time_s === null || past === null || times.length === 0) return state;
+/** The state at a time, from the row of the series at or before it; values that are in no series remain current. null: its series is not there yet. */
+export function stateAt(state: State, series: Series | null, time_s: number | null): State | null {
+  if (time_s === null) return state;
+  const past = seriesUntil(series, time_s);
+  if (past === null) return null;
+  const times = past.time["time_s"] ?? [];
+  if (times.length === 0) return state;
   const row = times.length - 1;
   const number = <T extends number | null>(column: string, otherwise: T): T | number => past.time[column]?.[row] ?? otherwise;
   const { front } = past;

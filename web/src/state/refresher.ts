@@ -25,6 +25,8 @@ export class Refresher {
       void this.refresh();
     });
     twin.shown.watch(() => void this.refresh());
+    // A recording is shown at its beginning at once: its values then are in the series.
+    twin.connection.watch(() => void this.refresh());
     setInterval(() => void this.refresh(), every_ms);
     void this.refresh();
   }
