@@ -27,7 +27,7 @@ class DesignTest : public scene::SceneFolder {
             fmt::format("[solver]\nmodel = \"depth_averaged\"\nend_time_s = 12\n"
                         "[[barrier]]\nname = \"wall\"\nline_m = [[{0}, {1}], [{0}, {2}]]\nheight_m = 4\n"
                         "thickness_m = 5\n",
-                        west + 90, south + 60, south + 140));
+                        west + 90, south + 20, south + 180));
     }
     [[nodiscard]] DesignRequest request() const {
         DesignRequest wanted;
@@ -128,9 +128,10 @@ TEST_F(DesignTest, resumes_makes_damaged_runs_again_and_writes_all_of_it) {
 
 TEST_F(DesignTest, compares_lines_of_which_the_one_beside_the_stream_is_open) {
     DesignRequest two = request();
-    two.lines = {fmt::format("lower={0},{1} {0},{2}", west + 130, south + 60, south + 140)};
+    two.lines = {fmt::format("lower={0},{1} {0},{2}", west + 130, south + 20, south + 180)};
     two.low = two.high = 9;
-    const DesignResult result = searched(planned(two));
+    const Design design = planned(two);
+    const DesignResult result = searched(design);
     ASSERT_EQ(result.lines.size(), 2U);
     EXPECT_EQ(result.lines[1].line.name, "lower");
     EXPECT_EQ(result.lines[0].trials.size(), 1U);
@@ -145,7 +146,8 @@ TEST_F(DesignTest, says_that_no_height_is_enough) {
     low.low = 0.5;
     low.high = 1;
     low.step = 0.5;
-    const DesignResult result = searched(planned(low));
+    const Design design = planned(low);
+    const DesignResult result = searched(design);
     EXPECT_FALSE(result.lines.front().found);
     EXPECT_TRUE(design_results(result)["lines"][0]["least_height_m"].is_null());
 }
