@@ -21,8 +21,9 @@
 #include "layers.hpp"
 #include "scene/builtin.hpp"
 #include "scene/scene.hpp"
-#include "serve/overlay.hpp"
+#include "scene_input.hpp"
 #include "serve/server.hpp"
+#include "serve/tile_addresses.hpp"
 #include "tokens.hpp"
 
 namespace talus::cli {
