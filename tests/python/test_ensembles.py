@@ -107,9 +107,9 @@ class EnsembleTest(unittest.TestCase):
 
     def test_finds_the_least_height_of_a_barrier_on_two_lines(self):
         scene = pathlib.Path(__file__).parents[2] / "examples" / "risk" / "scene.toml"
-        call = dict(runs=2, threads=1, settings={"scene.option": "gully barrier", "solver.end_time_s": 40})
+        call = dict(runs=2, threads=1, settings={"scene.option": "gully barrier", "release.volume_m3": 1500, "solver.end_time_s": 40})
         other = [(824236.0, 825763.0), (824264.0, 825753.0)]
-        found = talus.design(scene, "gully barrier", {KEY: (0.15, 0.3)}, share=0, heights_m=(2, 14), height_step_m=6, lines={"other": other}, **call)
+        found = talus.design(scene, "gully barrier", {KEY: (0.1, 0.2)}, share=0, heights_m=(2, 14), height_step_m=6, lines={"other": other}, **call)
         self.assertEqual([line["name"] for line in found.lines], ["gully barrier", "other"])
         np.testing.assert_allclose(found.lines[1]["line_m"], other)
         # Of the heights that were tried, the least that lets nothing pass.

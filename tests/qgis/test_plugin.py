@@ -355,9 +355,9 @@ class Plugin(unittest.TestCase):
     def test_designs_a_barrier(self):
         scene = pathlib.Path(__file__).parents[2] / "examples" / "risk" / "scene.toml"
         output = new_output("design")
-        given = {"SCENE": str(scene), "BARRIER": "gully barrier", "VARY": "material.friction_coefficient=0.15:0.3", "RUNS": 2}
+        given = {"SCENE": str(scene), "BARRIER": "gully barrier", "VARY": "material.friction_coefficient=0.1:0.2", "RUNS": 2}
         heights = {"SHARE": 0, "MIN_HEIGHT": 2, "MAX_HEIGHT": 14, "HEIGHT_STEP": 12}
-        settings = "solver.end_time_s=40\nscene.option=gully barrier"
+        settings = "solver.end_time_s=40\nrelease.volume_m3=1500\nscene.option=gully barrier"
         results = run("design", {**given, **heights, "SETTINGS": settings, "OUTPUT": output})
         self.assertIn("gully barrier", pathlib.Path(results["REPORT"]).read_text())
         self.assertIn("14", pathlib.Path(results["HEIGHTS"]).read_text())
