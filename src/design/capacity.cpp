@@ -114,7 +114,8 @@ Storage storage_behind(const terrain::Terrain& terrain, const std::vector<PlanPo
             double sum = 0;
             int behind = 0;
             for (int k = 0; k < n * n; ++k) {
-                const double right = (k % n + 0.5) / n - 0.5, up = (k / n + 0.5) / n - 0.5;
+                const int east = k % n, north = k / n;
+                const double right = (east + 0.5) / n - 0.5, up = (north + 0.5) / n - 0.5;
                 const PlanPoint q{p.x + right * cell, p.y + up * cell};
                 const double space = space_at(q);
                 if (std::isnan(space) || (n > 1 && !is_behind(q))) continue;

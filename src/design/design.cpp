@@ -123,12 +123,14 @@ fs::path extra_file(const fs::path& folder, std::size_t run) {
     return folder / "barrier" / fmt::format("{:06}.json", run);
 }
 
-/// What the files of a definition do not say.
-void complete_definition(const Design& design, Part& part) {
+/// That of the runs, and what the files of a definition do not say.
+void define(const Design& design, const scene::Scene& scene, Part& part) {
+    Json definition = ensemble_definition(*part.runs, part.source, scene, design.request.scene_name);
     Json points = Json::array();
     for (const PlanPoint& p : design.lines[part.line].points) points.push_back({p.x, p.y});
-    part.definition["design"] = {
+    definition["design"] = {
         {"barrier", design.request.barrier}, {"line", points}, {"height_m", part.height}, {"numbers", part.numbers}};
+    part.definition = std::make_shared<const Json>(std::move(definition));
 }
 
 }  // namespace
@@ -142,8 +144,7 @@ Part make_part(const Design& design, std::size_t line, double height) {
     for (std::size_t k = 0; k < part.runs->count(); ++k) part.numbers.push_back(k);
     part.folder = design.request.folder / folder_name(line, design.lines[line].name) /
                   (height > 0 ? fmt::format("height_{:g}", height) : "without");
-    part.definition = ensemble_definition(*part.runs, part.source, *design.scene, design.request.scene_name);
-    complete_definition(design, part);
+    define(design, *design.scene, part);
     return part;
 }
 
@@ -161,13 +162,12 @@ Result<Part> particle_part(const Design& design, std::size_t line, double height
     runs.set_points(std::move(points));
     part.runs = std::make_shared<const ensemble::PlannedRuns>(std::move(runs));
     part.folder = part.folder.parent_path() / fmt::format("particles_{:g}", height);
-    part.definition = ensemble_definition(*part.runs, part.source, scene, design.request.scene_name);
-    complete_definition(design, part);
+    define(design, scene, part);
     return part;
 }
 
 Result<PartRuns> read_part(const Part& part) {
-    const auto folder = ensemble::EnsembleFolder::join(part.folder, part.definition);
+    const auto folder = ensemble::EnsembleFolder::join(part.folder, *part.definition);
     PartRuns made;
     for (std::size_t run = 0; run < part.runs->count(); ++run) {
         TALUS_ASSIGN(ensemble::RunRecord record, ensemble::read_run_record(folder.run_file(run), folder.plan(), run));
@@ -238,14 +238,14 @@ Result<Design> plan_design(const DesignRequest& request) {
 Status open_part(const Part& part) {
     std::error_code error;
     fs::create_directories(part.folder.parent_path(), error);  // opening says what is wrong with it
-    const auto opened = ensemble::EnsembleFolder::open(part.folder, part.definition);
+    const auto opened = ensemble::EnsembleFolder::open(part.folder, *part.definition);
     if (!opened) return opened.error();
     fs::create_directories(part.folder / "barrier", error);  // writing says so
     return {};
 }
 
 Result<ensemble::EnsembleOutcome> run_part(const Design& design, const Part& part, ensemble::EnsembleOptions options) {
-    const auto folder = ensemble::EnsembleFolder::join(part.folder, part.definition);
+    const auto folder = ensemble::EnsembleFolder::join(part.folder, *part.definition);
     const SiteLine& line = design.lines[part.line];
     const std::string& barrier = design.request.barrier;
     options.prepare = [&](scene::Scene& scene) {

@@ -47,7 +47,7 @@ struct Part {
     std::shared_ptr<const ensemble::PlannedRuns> runs;
     std::vector<std::size_t> numbers;  ///< of the plan's runs
     std::filesystem::path folder;
-    nlohmann::ordered_json definition;
+    std::shared_ptr<const nlohmann::ordered_json> definition;
 };
 
 struct Design {

@@ -116,7 +116,7 @@ std::string section_svg(const DesignResult& result) {
         for (double x = -thickness / 2; x > -span; x -= span / 200) {
             const double z = crest + slope * (-x - thickness / 2);
             path += fmt::format("L{} {}", coordinate(px(x)), coordinate(py(std::max(z, ground_at(x)))));
-            back = fmt::format("L{} {}", coordinate(px(x)), coordinate(py(ground_at(x)))) + back;
+            back.insert(0, fmt::format("L{} {}", coordinate(px(x)), coordinate(py(ground_at(x)))));
             if (z <= ground_at(x)) break;
         }
         svg.path(style, path + back + "Z");

@@ -179,8 +179,8 @@ std::vector<std::string> assumptions_of(const DesignResult& result) {
         fmt::format("Model of the search: {}. {}", depth_averaged ? "depth-averaged" : "particles",
                     first.confirmed_runs.empty() ? "The height is not confirmed with particles in these runs."
                                                  : "The deciding runs were repeated with particles."),
-        "A run passes if more than a thousandth of its released volume gets over the crest, through openings, or round "
-        "an end within half the line's length.",
+        std::string("A run passes if more than a thousandth of its released volume gets over the crest, through ") +
+            "openings, or round an end within half the line's length.",
         fmt::format(
             "Deposition slope: {:.1f}° ({}); the ground falls by {:.1f}° towards the line.",
             std::atan(first.deposition_slope) * 180 / std::numbers::pi,
@@ -195,14 +195,11 @@ std::vector<std::string> assumptions_of(const DesignResult& result) {
 
 std::vector<std::string> limits_of(const DesignResult& result) {
     std::vector<std::string> made = {
-        "Velocity and thickness are peaks of the map cells along the line; they need not come at the same time or "
-        "place.",
-        "Force is that on all of the barrier over its length; it is higher where the flow comes. Filtered impulses of "
-        "the "
-        "model are no substitute for a code of practice.",
-        "Left out: single boulders and wood in the runs, repeated surges onto a filled barrier, scour, seepage, "
-        "deformation, "
-        "foundation, freeboard and factors of safety.",
+        "Velocity and thickness are peaks of the map cells along the line; they need not come together.",
+        std::string("Force is that on all of the barrier over its length; it is higher where the flow comes. ") +
+            "Filtered impulses of the model are no substitute for a code of practice.",
+        std::string("Left out: single boulders and wood in the runs, repeated surges onto a filled barrier, scour, ") +
+            "seepage, deformation, foundation, freeboard and factors of safety.",
         "The barrier is empty at every event. Capacity counts the ground between the perpendiculars at its ends.",
         "Percentiles are of the stated factors alone, by nearest rank: beyond the number of runs they say nothing."};
     for (const std::string& text : result.lines.front().not_monotone) made.push_back("Not monotone: " + text);

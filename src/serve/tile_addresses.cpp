@@ -42,7 +42,7 @@ bool is_host(std::string_view host) {
 std::string unknown_key(const std::string& address) {
     for (std::size_t at = address.find('{'); at != std::string::npos; at = address.find('{', at + 1)) {
         const std::size_t end = address.find('}', at);
-        const std::string key = end == std::string::npos ? address.substr(at) : address.substr(at, end + 1 - at);
+        std::string key = end == std::string::npos ? address.substr(at) : address.substr(at, end + 1 - at);
         if (std::find(tile_keys.begin(), tile_keys.end(), key) == tile_keys.end()) return key;
     }
     return "";
