@@ -126,7 +126,7 @@ TEST_F(DesignTest, resumes_makes_damaged_runs_again_and_writes_all_of_it) {
                             HasSubstr("Section across the barrier"), Not(HasSubstr("{{"))));
 }
 
-TEST_F(DesignTest, compares_lines_of_which_the_one_beside_the_stream_is_open) {
+TEST_F(DesignTest, compares_two_lines_of_the_same_valley) {
     DesignRequest two = request();
     two.lines = {fmt::format("lower={0},{1} {0},{2}", west + 130, south + 20, south + 180)};
     two.low = two.high = 9;
