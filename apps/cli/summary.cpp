@@ -60,6 +60,15 @@ std::string discharge_text(const observe::DischargeRecord& r, int decimals) {
                        r.peak_time, r.passed, decimals);
 }
 
+std::string initiation_text(const run::Initiation& one) {
+    if (std::isnan(one.ratio)) return fmt::format("{}: was still held at the end", one.release);
+    if (std::isnan(one.failed_at)) {
+        return fmt::format("{}: did not fail, at a pore-pressure ratio of {:.2f} at the end", one.release, one.ratio);
+    }
+    return fmt::format("{}: failed at {:.1f} s, at a pore-pressure ratio of {:.2f}", one.release, one.failed_at,
+                       one.ratio);
+}
+
 std::string speed_text(double speed) {
     return std::isfinite(speed) ? fmt::format("{:.1f} m/s", speed) : std::string("not known");
 }
@@ -174,6 +183,7 @@ std::string summary_text(const scene::Scene& scene, const run::RunResult& result
                  fmt::format("{0:.{5}f} m3 released: {1:.{5}f} deposited, {2:.{5}f} moving, {3:.{5}f} left the {4}",
                              seen.volume_released, end.volume_deposited, end.volume_moving + end.volume_held,
                              end.volume_left, result.domain(), decimals));
+    for (const run::Initiation& one : result.initiations) text += line("initiation", initiation_text(one));
     for (const observe::DischargeRecord& r : seen.cross_sections)
         text += line("discharge", discharge_text(r, decimals));
     if (!scene.bed.empty()) {

@@ -75,6 +75,13 @@ Status check_releases(const scene::Scene& scene) {
         if (!(release.volume > 0 && std::isfinite(release.volume))) return of("release", i, "has no volume");
         if (release.thickness_raster && !sized(*release.thickness_raster)) return of("release", i, "has no raster");
         if (!release.thickness_raster && release.patches.empty()) return of("release", i, "has no area");
+        double before = -1;
+        for (const params::PressureSample& row : release.water) {
+            if (!(row.time > before && std::isfinite(row.time) && row.ratio >= 0 && row.ratio <= 1)) {
+                return of("release", i, "has water that rises out of order");
+            }
+            before = row.time;
+        }
         for (const terrain::ReleasePatch& patch : release.patches) {
             if (!closed({patch.polygon}) || !(patch.thickness > 0 && patch.thickness < highest)) {
                 return of("release", i, "has a polygon without an area or a thickness");

@@ -25,7 +25,9 @@ TALUS_PACKED(params::SceneInfo, title, description, reconstruction, assumptions,
 TALUS_PACKED(params::ReportSpec, client, author, checker, revision, reference, date, limits_of_use)
 TALUS_PACKED(params::TerrainSpec, file, crs, band, extent, obtain, deposit, erosion, orthophoto)
 TALUS_PACKED(params::ReleaseSpec, name, file, layer, thickness, thickness_attribute, thickness_raster,
-             thickness_direction, volume, start_time, shift_along, shift_across, pore_pressure_ratio, solid_fraction)
+             thickness_direction, volume, start_time, shift_along, shift_across, pore_pressure_ratio,
+             pore_pressure_hydrograph, solid_fraction)
+TALUS_PACKED(params::PressureSample, time, ratio)
 TALUS_PACKED(params::BedSpec, name, file, layer, depth, depth_attribute, depth_raster, law, growth_rate,
              critical_shear_stress, erosion_rate, erosion_depth_per_shear)
 TALUS_PACKED(params::InflowSpec, name, line, file, layer, polygon, polygon_file, direction, hydrograph, solid_fraction)
@@ -94,7 +96,7 @@ TALUS_PACKED(params::SceneSpec, scene, report, terrain, releases, beds, inflows,
              affected_areas, elevation_changes, variants, triggers, alarms, options, risk, risk_scenarios, exposures)
 
 TALUS_PACKED(terrain::ReleasePatch, polygon, thickness)
-TALUS_PACKED(terrain::Release, name, patches, thickness_raster, volume, spec)
+TALUS_PACKED(terrain::Release, name, patches, thickness_raster, volume, water, spec)
 TALUS_PACKED(terrain::Inflow, name, from, to, hydrograph, area, spec)
 TALUS_PACKED(terrain::Resistance, force_per_metre, pressure)
 TALUS_PACKED(terrain::Gauge, name, at, chainage)

@@ -116,6 +116,7 @@ void forget_folders(Content& content) {
     for (terrain::Release& release : content.releases) {
         forget(release.spec.file);
         forget(release.spec.thickness_raster);
+        forget(release.spec.pore_pressure_hydrograph);
     }
     for (terrain::Inflow& inflow : content.inflows) {
         for (std::string* path : {&inflow.spec.file, &inflow.spec.polygon_file, &inflow.spec.hydrograph}) forget(*path);

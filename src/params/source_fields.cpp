@@ -52,11 +52,24 @@ Section declare_release() {
     s.optional_key("pore_pressure_ratio", "", &ReleaseSpec::pore_pressure_ratio, between(0, 1), "that of the material",
                    "Pore-pressure ratio r_u of this body when it starts.")
         .needs(stress());
+    s.path(
+         "pore_pressure_hydrograph", &ReleaseSpec::pore_pressure_hydrograph, "no water rises",
+         "CSV with the columns time_s and pore_pressure_ratio, of water that rises in this body until it fails; linear "
+         "between rows, as in the first before it and in the last after it.")
+        .needs(stress());
     s.optional_key("solid_fraction", "", &ReleaseSpec::solid_fraction, between(0.4, 0.75), "that of the material",
                    "Share of this body's volume that grains fill when it starts, with material.pore_pressure = "
                    "\"dilatancy\".");
     s.rule([](const ReleaseSpec& release, const SceneSpec& scene, double) -> std::optional<Violation> {
         return lone_solid_fraction(release.solid_fraction, scene);
+    });
+    s.rule([](const ReleaseSpec& release, const SceneSpec&, double) -> std::optional<Violation> {
+        if (release.pore_pressure_hydrograph.empty() || !release.pore_pressure_ratio) return {};
+        return Violation{
+            "pore_pressure_ratio",
+            fmt::format(" = {} is refused beside pore_pressure_hydrograph, which says what the ratio is at "
+                        "any time; leave one of them out",
+                        *release.pore_pressure_ratio)};
     });
     s.exactly_one_of({"thickness_m", "thickness_attribute", "thickness_raster", "volume_m3"}, "file");
     s.rule([](const ReleaseSpec& release, const SceneSpec& scene, double) -> std::optional<Violation> {

@@ -54,6 +54,13 @@ enum class EntrainmentLaw {
 /// How the thickness of a release is measured.
 enum class ThicknessDirection { normal, vertical };
 
+/// A row of the pore pressure that rising water gives a release; linear between rows.
+struct PressureSample {
+    double time = 0;   ///< s
+    double ratio = 0;  ///< r_u
+    bool operator==(const PressureSample&) const = default;
+};
+
 /// `[[release]]`: exactly one of thickness, thickness_attribute, thickness_raster, volume.
 struct ReleaseSpec {
     std::string name;
@@ -67,6 +74,7 @@ struct ReleaseSpec {
     double start_time = 0;                      ///< s
     double shift_along = 0, shift_across = 0;   ///< m in plan, downslope, and to the left of that direction
     std::optional<double> pore_pressure_ratio;  ///< r_u; absent: that of the material
+    std::string pore_pressure_hydrograph;       ///< CSV of r_u over time, until it fails; empty: no water rises
     std::optional<double> solid_fraction;       ///< with evolving pore pressure; absent: that of the material
     bool operator==(const ReleaseSpec&) const = default;
 };

@@ -53,6 +53,8 @@ void mark_observations(const scene::Scene& scene, Plot& velocity);
 [[nodiscard]] Json time_chart(const run::RunResult& result);
 [[nodiscard]] Json zones(const scene::Scene& scene);
 [[nodiscard]] Json inflow(const scene::Scene& scene, const run::RunResult& result);
+/// When the releases failed in which water rises.
+[[nodiscard]] Json initiation(const run::RunResult& result);
 [[nodiscard]] Json erosion(const scene::Scene& scene, const run::RunResult& result);
 [[nodiscard]] Json comparison(const run::Comparison& comparison, const scene::Scene& scene, const run::RunResult& base);
 /// A run as a curve among others.

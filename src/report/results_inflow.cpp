@@ -1,5 +1,6 @@
-// Inflow during the run.
+// Inflow during the run, and releases that fail in it.
 #include <algorithm>
+#include <cmath>
 #include <string>
 #include <vector>
 
@@ -30,6 +31,21 @@ Json mass_of(const terrain::Inflow& inflow) {
 }
 
 }  // namespace
+
+Json initiation(const run::RunResult& result) {
+    if (result.initiations.empty()) return {};
+    Json list = Json::array();
+    for (const run::Initiation& one : result.initiations) {
+        const bool held = std::isnan(one.ratio), failed = !std::isnan(one.failed_at);
+        list.push_back({{"release", one.release},
+                        {"held", held},
+                        {"failed", failed},
+                        {"stood", !held && !failed},
+                        {"failed_at_s", failed ? Json(one.failed_at) : Json()},
+                        {"pore_pressure_ratio", held ? Json() : Json(one.ratio)}});
+    }
+    return {{"list", std::move(list)}, {"moved_m", result.particle_spacing}};
+}
 
 Json inflow(const scene::Scene& scene, const run::RunResult& result) {
     if (scene.inflows.empty()) return {};

@@ -19,6 +19,21 @@ namespace {
 
 constexpr std::uint64_t steps_between_good_states = 16;  // a copy costs less than a hundredth of a step
 
+std::vector<Initiation> initiations_of(const sim::Model& model, const sim::StateSummary& state) {
+    std::vector<Initiation> all;
+    for (std::size_t r = 0; r < model.releases.size(); ++r) {
+        if (model.releases[r].water.empty()) continue;
+        Initiation initiation{.release = model.releases[r].name};
+        if (r < state.water_of_release.size() && state.water_of_release[r].started != 0) {
+            const sim::Water& water = state.water_of_release[r];
+            initiation.ratio = water.ratio;
+            if (water.failed != 0) initiation.failed_at = water.failed_at;
+        }
+        all.push_back(std::move(initiation));
+    }
+    return all;
+}
+
 }  // namespace
 
 Result<std::unique_ptr<Run>> Run::start(const scene::Scene& scene, std::optional<double> particle_spacing,
@@ -170,6 +185,7 @@ RunResult Run::result(const std::string& unfinished) const {
     if (followed_corridor_width_ > 0) {
         observe::follow_debris(ground(), followed_corridor_width_, outputs_, result.observation);
     }
+    result.initiations = initiations_of(model(), summary());
     result.stage_times = simulation_.stage_times();
     result.hash = hash_state(state());
     result.particles = summary().released();

@@ -36,15 +36,23 @@ struct StillMoving {
 /// A reason for which a run ended, and what still moved: "reached ... with 12.6 m3 still moving (...)".
 [[nodiscard]] std::string with_what_moved(std::string reason, const StillMoving& moving);
 
+/// When a release failed in which water rises (sim/rising_water.hpp).
+struct Initiation {
+    std::string release;
+    double failed_at = observe::never;  ///< s; NaN: it did not fail
+    double ratio = observe::never;      ///< pore-pressure ratio of the water then, or at the end; NaN: it did not start
+};
+
 struct RunResult {
     RunStatus status = RunStatus::complete;
     std::string stop_reason;           ///< "debris came to rest (less than 0.1 % of it moving for 3 s)", the fault, ...
     std::optional<FaultRecord> fault;  ///< at fault
     observe::Observation observation;
-    sim::StageTimes stage_times;     ///< of particles
-    std::vector<Phase> grid_stages;  ///< of the depth-averaged model
-    std::uint64_t hash = 0;          ///< of time, ids, positions and velocities at the end, in id order
-    std::uint32_t particles = 0;     ///< from releases and inflows, without removed or entrained ones
+    std::vector<Initiation> initiations;  ///< of the releases in which water rises
+    sim::StageTimes stage_times;          ///< of particles
+    std::vector<Phase> grid_stages;       ///< of the depth-averaged model
+    std::uint64_t hash = 0;               ///< of time, ids, positions and velocities at the end, in id order
+    std::uint32_t particles = 0;          ///< from releases and inflows, without removed or entrained ones
     std::uint64_t steps = 0;
     double simulated_time = 0, wall_time = 0;  ///< s; wall time of the model's steps, with a grid without measurements
     double seed_time = 0, finish_time = 0;     ///< s of wall time: before the first step, and after the last one

@@ -74,6 +74,7 @@ void StopRule::reset(double time) {
 }
 
 bool still_waiting(const sim::Model& model, const sim::StateSummary& state) {
+    if (water_to_come(model, state)) return true;
     return std::any_of(model.releases.begin(), model.releases.end(), [&](const sim::ReleaseGroup& release) {
         return state.time <= release.start_time && std::isfinite(release.start_time);
     });

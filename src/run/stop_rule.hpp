@@ -91,7 +91,8 @@ class StopRule {
     bool at_rest_ = false;
 };
 
-/// Whether a release has not started yet, or started in the last step; one that waits to be triggered does not count.
+/// Whether a release has not started yet, or started in the last step, or water still rises in it; one that waits to be
+/// triggered does not count.
 [[nodiscard]] bool still_waiting(const sim::Model& model, const sim::StateSummary& state);
 
 [[nodiscard]] inline bool reached_end_time(const params::SolverSpec& solver, const sim::StateSummary& state) {

@@ -25,6 +25,7 @@ constexpr std::array keys = {
     DepthAveragedKey{"release.shift_along_m", used, ""},
     DepthAveragedKey{"release.shift_across_m", used, ""},
     DepthAveragedKey{"release.pore_pressure_ratio", used, ""},
+    DepthAveragedKey{"release.pore_pressure_hydrograph", refused, "has no debris that waits for water to rise"},
     DepthAveragedKey{"release.solid_fraction", used, ""},
     DepthAveragedKey{"inflow.name", used, ""},
     DepthAveragedKey{"inflow.line_m", used, ""},

@@ -12,6 +12,7 @@
 #include "scene/known_ground.hpp"
 #include "scene/load.hpp"
 #include "scene/polygons.hpp"
+#include "scene/pressure_hydrograph.hpp"
 
 namespace talus::scene {
 namespace {
@@ -210,6 +211,12 @@ Result<terrain::Release> load_release(const ParsedScene& parsed, std::size_t ind
             if (!outlines) return refused("thickness_raster", outlines.error());
             for (const Polygon& outline : *outlines) release.patches.push_back({outline, 0});
         }
+    }
+    if (!spec.pore_pressure_hydrograph.empty()) {
+        Result<std::vector<params::PressureSample>> rows = read_pressure_hydrograph(spec.pore_pressure_hydrograph);
+        if (!rows) return refused("pore_pressure_hydrograph", rows.error());
+        record_input(label + " pore pressure", spec.pore_pressure_hydrograph, scene);
+        release.water = std::move(*rows);
     }
     const char* const moved = spec.shift_along != 0 ? "shift_along_m" : "shift_across_m";
     const Result<PlanPoint> by = shift(spec, label, release, scene);

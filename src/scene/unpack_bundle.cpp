@@ -79,7 +79,7 @@ Status check_variant_paths(const ParsedScene& parsed) {
 
 /// What the file of a key may be; nothing: the scene's own reader takes it as it is.
 std::optional<geo::ForeignWanted> wanted_for(const std::string& section, const std::string& key, int band) {
-    if (key == "hydrograph") return {};
+    if (key == "hydrograph" || key == "pore_pressure_hydrograph") return {};
     geo::ForeignWanted wanted;
     wanted.cells = 2e8;  // as raster_read takes
     const bool raster = section == "elevation_change" || key == "deposit" || key == "erosion" || key == "raster" ||

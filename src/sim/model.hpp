@@ -23,6 +23,7 @@ struct ReleaseGroup {
     std::uint32_t first_particle = 0, last_particle = 0;
     std::optional<double> pore_pressure_ratio = {};  ///< r_u at its start; absent: that of the material
     std::optional<double> solid_fraction = {};       ///< at its start; absent: that of the material
+    std::vector<params::PressureSample> water = {};  ///< by time, see rising_water.hpp; empty: none rises
 };
 
 /// Internal friction that grows with the shear rate, the mu(I) law.

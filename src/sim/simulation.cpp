@@ -29,7 +29,13 @@ struct Simulation::StepHooks {
         self.inject_inflow(watcher);
         self.hand_over();
     }
-    void choose_time_step() const { self.state_.time_step = sim::choose_time_step(self.model_, self.state_); }
+    void choose_time_step() const {
+        self.state_.time_step = sim::choose_time_step(self.model_, self.state_);
+        raise_water(self.model_, self.state_, [&](std::uint32_t first, std::uint32_t last) {
+            return self.device_ != nullptr ? self.device_->sum_places(self.state_, first, last)
+                                           : sum_places(self.state_, first, last);
+        });
+    }
     [[nodiscard]] Status check_faults() const {
         return find_fault(self.model_, self.state_, self.highest_energy_head_);
     }
@@ -281,6 +287,18 @@ Motion motion_of(const State& state, double deposited_speed) {
             return sum;
         },
         [](const Motion& a, const Motion& b) { return a + b; });
+}
+
+PlaceSum sum_places(const State& state, std::uint32_t first, std::uint32_t last) {
+    return simd::reduce_ranges(
+        state.count, 8192, PlaceSum{},
+        [&](std::size_t begin, std::size_t end, PlaceSum sum) {
+            for (std::size_t i = begin; i < end; ++i) {
+                if (state.id[i] >= first && state.id[i] < last) sum = sum + PlaceSum::of(state.position.at(i));
+            }
+            return sum;
+        },
+        [](const PlaceSum& a, const PlaceSum& b) { return a + b; });
 }
 
 double kinetic_energy(const Model& model, const State& state) {

@@ -126,6 +126,9 @@ class Simulation {
 /// Of the particles now.
 [[nodiscard]] Motion motion_of(const State& state, double deposited_speed);
 
+/// Of the particles whose ids are in [first, last).
+[[nodiscard]] PlaceSum sum_places(const State& state, std::uint32_t first, std::uint32_t last);
+
 /// Sum of m v^2 / 2 over the particles, J.
 [[nodiscard]] double kinetic_energy(const Model& model, const State& state);
 /// Sum of m g z over the particles, J, z above the frame's origin.

@@ -6,6 +6,7 @@
 #include "core/geometry.hpp"
 #include "sim/physics/pore_pressure.hpp"
 #include "sim/physics/stress.hpp"
+#include "sim/rising_water.hpp"
 
 namespace talus::sim {
 
@@ -152,12 +153,13 @@ struct StateSummary {
     int iterations = 0;                                    ///< of the step
     double max_speed = 0;                                  ///< m/s
     std::vector<BuildingContact> building_contacts;
+    std::vector<Water> water_of_release;  ///< as Model::releases; empty: no water rises
 
     template <class Archive>
     void keep(Archive& archive) {
         archive(time, time_step, previous_time_step, step, count, awake, seeded, entrained, outflow, removed,
                 mean_compression, max_compression, mean_added_compression, overcompressed_share, squeezing_share,
-                iterations, max_speed, building_contacts);
+                iterations, max_speed, building_contacts, water_of_release);
     }
 };
 

@@ -1,5 +1,6 @@
 #include "sim/step_constants.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include "sim/physics/density.hpp"
@@ -34,6 +35,8 @@ StepConstants::StepConstants(const Model& model, const StateSummary& state) {
     inertial_grain_size = narrow(model.inertial_friction.grain_size / model.kernel.gradient_moment);
     pair_friction_cap = narrow(sim::pair_friction_cap(model.internal_friction_coefficient));
     viscous_smoothing = narrow(step_smoothing(model.viscosity, dt));
+    water_rises = std::any_of(state.water_of_release.begin(), state.water_of_release.end(),
+                              [](const Water& water) { return water.rises(); });
 
     // A hundredth of the speed of a fall through its own size; waking takes twice that, so that particles do not
     // alternate between the two.

@@ -33,6 +33,7 @@ struct StepConstants {
     float inertial_grain_size{};  ///< m, see inertial_friction()
     float pair_friction_cap{};    ///< see pair_friction_cap()
     float viscous_smoothing{};    ///< see step_smoothing()
+    bool water_rises{};           ///< in any release; see rising_water.hpp
 
     // Debris that sleeps.
     float rest_duration{};                ///< s

@@ -24,6 +24,7 @@ struct Release {
     std::vector<ReleasePatch> patches;            ///< not overlapping
     std::optional<Grid<float>> thickness_raster;  ///< if present, replaces the patches' thickness (NaN, <= 0: none)
     double volume = 0;                            ///< m3, as integrated by release_volume
+    std::vector<params::PressureSample> water;    ///< pore pressure until it fails, by time; empty: no water rises
     params::ReleaseSpec spec;                     ///< its specification by scene or user, without the name
 
     /// Thickness as measured at a world plan position; 0 outside the patches.

@@ -260,17 +260,21 @@ void LiveRun::replace_releases(sim::Model& model, sim::State& state, Change& cha
     }
     std::vector<Group> groups;
     std::vector<sim::ReleaseGroup> ranges;
+    std::vector<sim::Water> waters;
     for (std::size_t g = 0; g < groups_.size(); ++g) {
         if (change.gone[g]) continue;
         groups.push_back(groups_[g]);
         ranges.push_back(model.releases[g]);
+        if (g < state.water_of_release.size()) waters.push_back(state.water_of_release[g]);
     }
+    state.water_of_release = std::move(waters);
     for (Change::Seed& seed : change.seeds) {
         const std::uint32_t first = state.seeded;
         append_particles(state, seed.state, first);
         groups.push_back({seed.release->id, false});
         ranges.push_back({seed.release->body->name, seed.release->body->spec.start_time, first, state.seeded,
-                          seed.release->body->spec.pore_pressure_ratio, seed.release->body->spec.solid_fraction});
+                          seed.release->body->spec.pore_pressure_ratio, seed.release->body->spec.solid_fraction,
+                          seed.release->body->water});
     }
     groups_ = std::move(groups);
     model.releases = std::move(ranges);

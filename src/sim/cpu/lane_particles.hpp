@@ -110,6 +110,17 @@ struct LaneParticles : LaneAccess<count> {
         }
         return soil;
     }
+    TALUS_INLINE stages::RisingWater<Real> water() const {
+        stages::RisingWater<Real> rising{Real(-1), Real(0)};
+        for (int lane = 0; lane < count; ++lane) {
+            const std::uint32_t id = data.state.id[i + static_cast<std::size_t>(lane)];
+            const Water water = water_of(data.model, data.state.water_of_release, id);
+            if (!water.rises()) continue;
+            rising.ratio.set(lane, water.ratio);
+            rising.rise.set(lane, water.rise);
+        }
+        return rising;
+    }
     /// Of those that `moves` says.
     TALUS_INLINE void set_soil(const Soil<Real>& soil, const Mask& moves) const {
         for (int lane = 0; lane < count; ++lane) {

@@ -46,6 +46,9 @@ class Backend {
     virtual void fetch_kept(State& state) = 0;
     /// Over all particles.
     [[nodiscard]] virtual Motion count_motion(const StateSummary& state, const MotionCount& count) const = 0;
+    /// Over the particles whose ids are in [first, last).
+    [[nodiscard]] virtual PlaceSum sum_places(const StateSummary& state, std::uint32_t first,
+                                              std::uint32_t last) const = 0;
 
     virtual void begin_step(const Model& model, const State& state) = 0;
     virtual void release_held(const Model& model, State& state) = 0;

@@ -21,7 +21,8 @@ namespace talus::sim::device {
 template <class Executor>
 class BackendOn final : public Resident<Executor> {
     using Here = Resident<Executor>;
-    using Here::bounds, Here::data_, Here::executor_, Here::list_start_, Here::needs_, Here::reorder;
+    using Here::bounds, Here::data_, Here::executor_, Here::list_start_, Here::follow_water, Here::needs_,
+        Here::reorder;
     template <class T>
     using Memory = Array<T, Executor>;
 
@@ -29,6 +30,7 @@ class BackendOn final : public Resident<Executor> {
     void begin_step(const Model& model, const State& state) override {
         data_.step = StepConstants(model, state);
         data_.time = state.time;
+        follow_water(state);
     }
 
     void release_held(const Model&, State& state) override { executor_.for_each(state.count, ReleaseHeld{data_}); }

@@ -62,6 +62,11 @@ struct OneParticle {
     [[nodiscard]] TALUS_DEVICE Soil<float> soil() const {
         return soil_of(d.model, d.state.soil_of_id, d.state.entry_of_id, d.state.id[i]);
     }
+    [[nodiscard]] TALUS_DEVICE stages::RisingWater<float> water() const {
+        const Water water = water_of(d.model, d.state.water_of_release, d.state.id[i]);
+        if (!water.rises()) return {};
+        return {water.ratio, water.rise};
+    }
     TALUS_DEVICE void set_soil(const Soil<float>& soil) const { d.state.soil_of_id[d.state.id[i]] = soil; }
 
     // What the step knows of it.

@@ -24,6 +24,15 @@ struct MotionOf {
 
     TALUS_DEVICE Motion operator()(std::uint32_t i) const { return count(d.state.velocity[i]); }
 };
+struct PlaceOf {
+    Data d;
+    std::uint32_t first{}, last{};  ///< ids
+
+    TALUS_DEVICE PlaceSum operator()(std::uint32_t i) const {
+        const std::uint32_t id = d.state.id[i];
+        return id >= first && id < last ? PlaceSum::of(d.state.position[i]) : PlaceSum{};
+    }
+};
 struct IsAwake {
     const std::uint8_t* asleep;
 

@@ -66,6 +66,11 @@ class Resident : public Backend {
         return executor_.template reduce<Motion>(state.count, Motion{}, MotionOf{data_, fast}, Add{});
     }
 
+    [[nodiscard]] PlaceSum sum_places(const StateSummary& state, std::uint32_t first,
+                                      std::uint32_t last) const override {
+        return executor_.template reduce<PlaceSum>(state.count, PlaceSum{}, PlaceOf{data_, first, last}, Add{});
+    }
+
     [[nodiscard]] std::string name() const override {
         return executor_.name();
     }
@@ -94,6 +99,13 @@ class Resident : public Backend {
     static Needs needs_of(const Model& model, const Ground& ground) {
         return {model.solver.internal_friction == params::InternalFriction::stress, resists_by_particle(model),
                 !ground.solids.empty()};
+    }
+
+    /// Takes over what changes in every step.
+    void follow_water(const StateSummary& state) {
+        if (state.water_of_release.empty()) return;
+        water_of_release_.upload(state.water_of_release);
+        data_.state.water_of_release = {water_of_release_.data(), state.water_of_release.size()};
     }
 
     /// Puts the first `count` particles of `order` first, in that order.
@@ -224,6 +236,7 @@ class Resident : public Backend {
     Memory<float> density_of_id_{executor_};
     Memory<Entry> entry_of_id_{executor_};
     Memory<Soil<float>> soil_of_id_{executor_};
+    Memory<Water> water_of_release_{executor_};
     Memory<ReleaseView> releases_{executor_};
     Memory<Quad> boundary_nodes_{executor_}, by_slope_{executor_}, sticking_{executor_};
     Memory<Quad> cover_{executor_}, terrain_{executor_};

@@ -47,6 +47,7 @@ struct ParticleArrays {
     std::span<const float> density_of_id;
     std::span<const Entry> entry_of_id;
     std::span<Soil<float>> soil_of_id;
+    std::span<const Water> water_of_release;
 
     /// Whether a step moves it.
     [[nodiscard]] TALUS_DEVICE bool moves(std::uint32_t i) const {

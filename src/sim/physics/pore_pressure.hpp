@@ -88,13 +88,16 @@ TALUS_DEVICE Real exponential(const Real& x) {
 
 /// The soil after a step of flow of a thickness, m, and a speed along the ground, m/s. `gravity`: normal to it, m/s2.
 ///
+/// `water`: lambda of the water around it, which it drains to; negative: hydrostatic.
+///
 /// Where the flow stretches, p - X L is kept (II, eq. 2.11). Then s = effective stress + sigma_0 follows ds/dt = s (r -
 /// A s) with A and r constant, whose solution is exact, positive and bounded at any step. The angle of dilatancy is
 /// that at the end of the step: s falls where it grows, so that there is one root, between any s and what the step
 /// makes of it. Change of volume is neglected: solid fraction changes, thickness does not.
 template <class Real>
 TALUS_DEVICE Soil<Real> evolve(const EvolvingPressure& law, const Soil<Real>& before, const Real& gravity,
-                               const Real& thickness, const Real& speed, const Real& time_step) {
+                               const Real& thickness, const Real& speed, const Real& time_step,
+                               const Real& water = Real(-1)) {
     using std::sqrt;
     const Real h = thickness, m = before.solid_fraction, dt = time_step, one(1), base(reference_stress);
     const Real fluid(law.fluid_density), excess_density = Real(law.grain_density - law.fluid_density) * m;
@@ -106,7 +109,8 @@ TALUS_DEVICE Soil<Real> evolve(const EvolvingPressure& law, const Soil<Real>& be
 
     const Real k = Real(law.permeability) * exponential((Real(law.solid_fraction) - m) * Real(1 / permeability_fall));
     const Real drain = k / (h * Real(law.viscosity));  // m / (Pa s) of D, half of it
-    const Real s0 = (one - ratio) * load + base, submerged = excess_density * gravity * h;
+    const Real s0 = (one - ratio) * load + base;
+    const Real submerged = select(water < Real(0), excess_density * gravity * h, (one - water) * load);
     const Real rate = (speed + speed) / h, a(law.compressibility);
     const Real fall =
         Real(3) * m * drain / (a * h) + drain * gravity * fluid * excess_density / (Real(2) * density * s0);

@@ -8,6 +8,7 @@
 #include "sim/model.hpp"
 #include "sim/physics/samosat.hpp"
 #include "sim/physics/stress.hpp"
+#include "sim/rising_water.hpp"
 
 /// Resistance other than Coulomb friction and viscosity: speed-dependent drag, cohesion, pore pressure, zones.
 namespace talus::sim {
@@ -19,7 +20,7 @@ inline bool slows_by_speed(const Model& model) {
 
 /// Whether there is pore pressure anywhere.
 inline bool has_pore_pressure(const Model& model) {
-    bool any = model.pore_pressure_ratio > 0;
+    bool any = model.pore_pressure_ratio > 0 || has_rising_water(model);
     for (const ReleaseGroup& release : model.releases) any = any || release.pore_pressure_ratio.value_or(0) > 0;
     return any;
 }
@@ -80,10 +81,17 @@ TALUS_DEVICE Soil<float> soil_of(const AnyModel& model, const Soils& soil_of_id,
 }
 
 /// What multiplies friction of dry debris: the share of the normal stress that the grains bear, or with evolving pore
-/// pressure that and the angle of dilatancy.
+/// pressure that and the angle of dilatancy. Where water rises in a release it gives the share until the debris fails;
+/// from then on the pressure decays as that of debris that starts does.
 template <class AnyModel, class AnyState>
 TALUS_DEVICE double share_of_grains(const AnyModel& model, const AnyState& state, std::size_t id, double time) {
-    if (!model.evolving_pressure.on) return effective_share(model, state.entry_of_id, id, time);
+    if (!model.evolving_pressure.on) {
+        const Water water = water_of(model, state.water_of_release, id);
+        if (!(water.ratio >= 0)) return effective_share(model, state.entry_of_id, id, time);
+        const double since = water.failed != 0 ? larger(0.0, time - water.failed_at) : 0, ratio = water.ratio;
+        const double decay = model.pore_pressure_decay_time;
+        return 1 - (decay > 0 ? ratio * std::exp(-since / decay) : ratio);
+    }
     return friction_share(soil_of(model, state.soil_of_id, state.entry_of_id, id), model.internal_friction_coefficient);
 }
 

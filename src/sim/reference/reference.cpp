@@ -64,6 +64,7 @@ double particles_in_column(const Model& model, const State& state, const Vector&
 /// Debris whose soil no step has computed yet.
 struct Started {
     const std::vector<Entry>& entry_of_id;
+    const std::vector<Water>& water_of_release;
     std::vector<Soil<float>> soil_of_id = {};
 };
 
@@ -76,6 +77,7 @@ Soil<double> wide(const Soil<float>& soil) {
 State::State(const sim::State& state)
     : time(state.time), time_step(state.time_step), previous_time_step(state.previous_time_step), step(state.step) {
     entry_of_id = state.entry_of_id;
+    water_of_release = state.water_of_release;
     for (const Soil<float>& soil : state.soil_of_id) soil_of_id.push_back(wide(soil));
     particles.resize(state.count);
     for (std::uint32_t i = 0; i < state.count; ++i) {
@@ -132,9 +134,12 @@ void Backend::apply_drag(const Model& model, const Ground& ground, State& state)
         if (evolves) {
             Soil<double>& soil = state.soil_of_id[id];
             const Vector along = p.velocity - below.normal * dot(p.velocity, below.normal);
-            if (!(soil.thickness > 0)) soil = wide(soil_of(model, std::vector<Soil<float>>{}, state.entry_of_id, id));
+            const bool started = soil.thickness > 0;
+            if (!started) soil = wide(soil_of(model, std::vector<Soil<float>>{}, state.entry_of_id, id));
+            const Water water = water_of(model, state.water_of_release, id);
+            if (water.rises()) soil.pressure_ratio = started ? soil.pressure_ratio + water.rise : water.ratio;
             soil = evolve(model.evolving_pressure, soil, model.gravity * below.normal.z, thickness, length(along),
-                          state.time_step);
+                          state.time_step, water.rises() ? static_cast<double>(water.ratio) : -1.0);
         }
         if (!slows) continue;
         p.velocity = slowed_by_drag(model, ground_resistance(model, p.position), below, distance, thickness, p.velocity,
@@ -155,8 +160,9 @@ void Backend::prepare_particles(const Model& model, const Ground& ground, State&
     for (std::size_t id = 0; id < state.particles.size(); ++id) {
         Particle& p = state.particles[id];
         const bool evolved = id < state.soil_of_id.size() && state.soil_of_id[id].thickness > 0;
-        p.effective_share = evolved ? friction_share(state.soil_of_id[id], model.internal_friction_coefficient)
-                                    : share_of_grains(model, Started{state.entry_of_id}, id, state.time);
+        p.effective_share =
+            evolved ? friction_share(state.soil_of_id[id], model.internal_friction_coefficient)
+                    : share_of_grains(model, Started{state.entry_of_id, state.water_of_release}, id, state.time);
         const GroundResistance<double> resistance = ground_resistance(model, p.position);
         const double before = state.previous_time_step;
         const double pressure = before > 0 ? -p.multiplier / (before * before) : 0;

@@ -37,6 +37,7 @@ struct State {
     std::uint64_t step = 0;
     std::vector<Particle> particles;
     std::vector<Entry> entry_of_id;
+    std::vector<Water> water_of_release;
     std::vector<Soil<double>> soil_of_id;  ///< with evolving pore pressure; empty before the first step
     // Of the last step; see compression.hpp.
     double mean_compression = 0, max_compression = 0, mean_added_compression = 0, overcompressed_share = 0,

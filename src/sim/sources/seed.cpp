@@ -176,7 +176,8 @@ Result<State> seed_releases(Model& model, const Ground& ground, const std::vecto
             }
         }
         model.releases.push_back({releases[r].name, releases[r].spec.start_time, first, next,
-                                  releases[r].spec.pore_pressure_ratio, releases[r].spec.solid_fraction});
+                                  releases[r].spec.pore_pressure_ratio, releases[r].spec.solid_fraction,
+                                  releases[r].water});
     }
     if (progress && !progress(0)) return ended;
     state.seeded = state.count = next;

@@ -30,8 +30,16 @@ TALUS_INLINE Soil<typename At::Real> evolved_soil(const At& at, const typename A
     const terrain::GroundSample<Real> below = at.ground().terrain.sample(p.x, p.y);
     const Real thickness = flow_thickness(at.model(), below, in_column);
     const Real speed = length(velocity - below.normal * dot(velocity, below.normal));
-    return evolve(at.model().evolving_pressure, at.soil(), Real(at.model().gravity) * below.normal.z, thickness, speed,
-                  Real(at.step().time_step));
+    Soil<Real> before = at.soil();
+    Real water(-1);
+    if (at.step().water_rises) {
+        const RisingWater<Real> rising = at.water();
+        water = rising.ratio;
+        const Real risen = select(before.thickness > Real(0), before.pressure_ratio + rising.rise, water);
+        before.pressure_ratio = select(water < Real(0), before.pressure_ratio, risen);
+    }
+    return evolve(at.model().evolving_pressure, before, Real(at.model().gravity) * below.normal.z, thickness, speed,
+                  Real(at.step().time_step), water);
 }
 
 /// Resistance, where it varies between particles.
@@ -112,7 +120,7 @@ TALUS_INLINE void apply_viscosity(const At& at, const PairKernel<Smoothing>& ker
 
 /// Debris that has hardly moved for the rest duration sleeps: it keeps its position and pressure until something moves
 /// beside it. Debris against walls stays awake, since the forces on them are measured; so does debris whose pore
-/// pressure still changes, since it may be creeping towards failure.
+/// pressure still changes or in which water rises, since it may be creeping towards failure.
 template <class At>
 TALUS_INLINE void update_sleep(const At& at) {
     using Real = typename At::Real;
@@ -126,6 +134,7 @@ TALUS_INLINE void update_sleep(const At& at) {
     if (at.model().evolving_pressure.on && any(sleeps)) {
         sleeps = both(sleeps, in_balance(at.model().evolving_pressure, at.soil()));
     }
+    if (at.step().water_rises && any(sleeps)) sleeps = both(sleeps, at.water().ratio < Real(0));
     if (any(sleeps)) at.put_to_sleep(sleeps);
     const auto wakes = both(moves, square > Real(at.step().wake_square));
     if (any(wakes)) at.wake_neighbours(wakes);

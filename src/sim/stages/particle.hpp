@@ -65,6 +65,13 @@ struct Resistance {
     Real ground_shear{0};     ///< see shear_beside_ground; with inertial friction only
 };
 
+/// The water that rises around a particle; see Water.
+template <class Real>
+struct RisingWater {
+    Real ratio{-1};  ///< at the end of the step; negative: none rises, or the debris has failed
+    Real rise{0};    ///< in the step
+};
+
 /// The change to apply of a particle's stress, pressure included.
 template <class Real>
 struct StressChange {
