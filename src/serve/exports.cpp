@@ -122,9 +122,12 @@ Response read_file(const fs::path& path, const ExportFile& file, SentFiles& file
     return bytes ? answer_with(std::move(*bytes), file) : error_response(500, bytes.error().message);
 }
 
-/// As `folder`/scene.toml, with the file that it names beside it.
+/// As `folder`/scene.toml, with the files that it names beside it.
 Status write_copy(const twin::SceneCopy& copy, const geo::Crs& crs, const fs::path& folder) {
     TALUS_TRY(products::write_text_file(folder / "scene.toml", copy.text));
+    for (const twin::DrawnTable& table : copy.tables) {
+        TALUS_TRY(products::write_text_file(folder / table.name, table.text));
+    }
     const std::string drawn = (folder / twin::SceneCopy::drawn_file).string();
     for (const twin::DrawnLayer& layer : copy.layers) {
         TALUS_TRY(geo::write_geopackage_layer(drawn, layer.name, layer.fields, layer.features, crs));

@@ -1,6 +1,8 @@
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <limits>
+#include <memory>
 #include <utility>
 
 #include <fmt/format.h>
@@ -111,7 +113,15 @@ std::function<std::pair<scene::Scene, run::RunResult>()> Scenario::outcome() con
 
 std::function<Result<SceneCopy>(const std::filesystem::path&, const std::vector<std::string>&)>
 Scenario::copy_of_scene() const {
-    return [setup = parts_->setup(), scene = parts_->scene](
+    Setup setup = parts_->setup();
+    for (ReleaseSetup& release : setup.releases) {
+        // One that was drawn has no start time but the one at which it was triggered.
+        if (!std::isinf(release.body->spec.start_time)) continue;
+        terrain::Release body = *release.body;
+        body.spec.start_time = parts_->run->start_time_of(release.id);
+        release.body = std::make_shared<const terrain::Release>(std::move(body));
+    }
+    return [setup = std::move(setup), scene = parts_->scene](
                const std::filesystem::path& file, const std::vector<std::string>& overrides) -> Result<SceneCopy> {
         return scene_copy(file, overrides, setup, *scene);
     };

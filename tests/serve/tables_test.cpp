@@ -15,6 +15,7 @@ namespace talus::test {
 namespace {
 
 using ::testing::HasSubstr;
+using ::testing::Not;
 
 const json arrival = {{"action", "put_observation"},
                       {"section", "arrival"},
@@ -25,6 +26,35 @@ const json alarm = {{"action", "put_alarm"},
 class TablesTest : public Serve {
   protected:
     [[nodiscard]] json setup() const { return as_viewer().get("/api/scenarios/A/setup").json(); }
+    /// Of the state that the run ends in.
+    [[nodiscard]] std::string hash_at_end() {
+        EXPECT_EQ(act({{"action", "set_speed"}, {"factor", nullptr}}).status, 200);
+        EXPECT_EQ(act({{"action", "run"}}).status, 200);
+        json state;
+        EXPECT_TRUE(eventually([&] {
+            state = as_viewer().get("/api/scenarios/A/state").json();
+            return state["status"] == "ended";
+        }));
+        return state.value("hash", "");
+    }
+    [[nodiscard]] std::string hash_after_restart() {
+        EXPECT_EQ(act({{"action", "restart"}}).status, 200);
+        return hash_at_end();
+    }
+    /// As the scene's archive has it.
+    [[nodiscard]] scene::Scene scene_of_archive(const std::string& name) {
+        const Answer answer = as_viewer().get("/api/scenarios/A/exports/scene.zip");
+        EXPECT_EQ(answer.status, 200) << answer.body;
+        const auto archive = scene_.folder() / (name + ".zip");
+        std::ofstream(archive, std::ios::binary) << answer.body;
+        const auto unpacked = scene::unpack_bundle(archive, scene_.folder() / name, {}, foreign_reader());
+        EXPECT_TRUE(unpacked) << unpacked.error().message;
+        scene_text_ = read_text(unpacked->scene);
+        auto again = scene::load_scene(unpacked->scene);
+        EXPECT_TRUE(again) << again.error().message;
+        return *std::move(again);
+    }
+    std::string scene_text_;  ///< of the archive that was read last
 };
 
 TEST_F(TablesTest, only_who_may_change_the_scenario_adds_to_them) {
@@ -64,34 +94,16 @@ TEST_F(TablesTest, the_archive_of_the_scene_has_them_and_loads) {
     ASSERT_EQ(act(arrival).status, 200);
     ASSERT_EQ(act(alarm).status, 200);
     ASSERT_EQ(act({{"action", "put_gauge"}, {"name", "ford"}, {"chainage_m", 10}}).status, 200);
-    const Answer answer = as_viewer().get("/api/scenarios/A/exports/scene.zip");
-    ASSERT_EQ(answer.status, 200) << answer.body;
-    const auto archive = scene_.folder() / "again.zip";
-    std::ofstream(archive, std::ios::binary) << answer.body;
-    const auto unpacked = scene::unpack_bundle(archive, scene_.folder() / "again", {}, foreign_reader());
-    ASSERT_TRUE(unpacked) << unpacked.error().message;
-    const auto again = scene::load_scene(unpacked->scene);
-    ASSERT_TRUE(again) << again.error().message;
-    EXPECT_EQ(again->spec.arrivals.back().time, 3);
-    EXPECT_EQ(again->spec.alarms.back().message, "Go.");
-    EXPECT_EQ(again->gauges.back().name, "ford");
-    EXPECT_EQ(again->spec.solver.end_time, 1000) << "with what the command line gave";
+    const scene::Scene again = scene_of_archive("again");
+    EXPECT_EQ(again.spec.arrivals.back().time, 3);
+    EXPECT_EQ(again.spec.alarms.back().message, "Go.");
+    EXPECT_EQ(again.gauges.back().name, "ford");
+    EXPECT_EQ(again.spec.solver.end_time, 1000) << "with what the command line gave";
 }
 
 TEST_F(TablesTest, the_archive_of_the_scene_runs_to_the_state_of_the_restarted_scenario) {
     start({"solver.end_time_s=1.5"});
-    const auto hash_of_run = [&] {
-        EXPECT_EQ(act({{"action", "restart"}}).status, 200);
-        EXPECT_EQ(act({{"action", "set_speed"}, {"factor", nullptr}}).status, 200);
-        EXPECT_EQ(act({{"action", "run"}}).status, 200);
-        json state;
-        EXPECT_TRUE(eventually([&] {
-            state = as_viewer().get("/api/scenarios/A/state").json();
-            return state["status"] == "ended";
-        }));
-        return state.value("hash", "");
-    };
-    const std::string plain = hash_of_run();
+    const std::string plain = hash_after_restart();
     const json changes[] = {
         {{"action", "put_barrier"},
          {"name", "Dam"},
@@ -116,20 +128,52 @@ TEST_F(TablesTest, the_archive_of_the_scene_runs_to_the_state_of_the_restarted_s
         const Answer answer = act(change);
         ASSERT_EQ(answer.status, 200) << answer.body;
     }
-    const std::string wanted = hash_of_run();
+    const std::string wanted = hash_after_restart();
     EXPECT_NE(wanted, plain) << "the changes must matter";
 
-    const Answer answer = as_viewer().get("/api/scenarios/A/exports/scene.zip");
-    ASSERT_EQ(answer.status, 200) << answer.body;
-    const auto archive = scene_.folder() / "drawn.zip";
-    std::ofstream(archive, std::ios::binary) << answer.body;
-    const auto unpacked = scene::unpack_bundle(archive, scene_.folder() / "drawn", {}, foreign_reader());
-    ASSERT_TRUE(unpacked) << unpacked.error().message;
-    const auto again = scene::load_scene(unpacked->scene);
-    ASSERT_TRUE(again) << again.error().message;
-    EXPECT_EQ(again->buildings.size(), 4U) << "that of the scene, the barn and two barriers";
-    EXPECT_EQ(again->spec.alarms.back().structure, "Barn");
-    const auto result = run::run_scene(*again, {});
+    const scene::Scene again = scene_of_archive("drawn");
+    EXPECT_EQ(again.buildings.size(), 4U) << "that of the scene, the barn and two barriers";
+    EXPECT_EQ(again.spec.alarms.back().structure, "Barn");
+    const auto result = run::run_scene(again, {});
+    ASSERT_TRUE(result) << result.error().message;
+    EXPECT_EQ(to_hex(result->hash), wanted);
+}
+
+TEST_F(TablesTest, the_archive_of_the_scene_has_what_moves_and_is_picked_up) {
+    start({"solver.end_time_s=2"});
+    json first = {{"time_s", 0}, {"discharge_m3ps", 5}, {"velocity_mps", 4}, {"density_kgpm3", 1900}};
+    json last = first;
+    last["time_s"] = 1;
+    const json changes[] = {
+        {{"action", "put_bed"},
+         {"name", "Loose"},
+         {"polygon", {{824195, 825085}, {824260, 825085}, {824260, 825115}, {824195, 825115}}},
+         {"depth_m", 0.4},
+         {"growth_rate_per_m", 0.03}},
+        {{"action", "put_inflow"},
+         {"name", "Gully"},
+         {"line", {{824215, 825106}, {824215, 825114}}},
+         {"hydrograph", {first, last}}},
+        {{"action", "restart"}},
+        {{"action", "put_release"},
+         {"name", "Second"},
+         {"polygon", {{824230, 825090}, {824240, 825090}, {824240, 825100}}},
+         {"thickness_m", 0.5}},
+    };
+    for (const json& change : changes) {
+        const Answer answer = act(change);
+        ASSERT_EQ(answer.status, 200) << answer.body;
+    }
+    ASSERT_EQ(act({{"action", "trigger_release"}, {"id", setup()["releases"].back()["id"]}}).status, 200);
+    const std::string wanted = hash_at_end();
+
+    const scene::Scene again = scene_of_archive("moving");
+    ASSERT_EQ(again.releases.size(), 2U);
+    EXPECT_EQ(again.releases.back().name, "Second");
+    EXPECT_EQ(again.inflows.at(0).hydrograph.at(1).density, 1900);
+    EXPECT_EQ(again.bed_layers.at(0).parts.at(0).depth, 0.4);
+    EXPECT_THAT(scene_text_, Not(HasSubstr("Left out")));
+    const auto result = run::run_scene(again, {});
     ASSERT_TRUE(result) << result.error().message;
     EXPECT_EQ(to_hex(result->hash), wanted);
 }
@@ -142,17 +186,10 @@ TEST_F(TablesTest, the_archive_of_the_scene_has_no_structure_that_was_removed_an
                    {"thickness_m", 0.5}})
                   .status,
               200);
-    const Answer answer = as_viewer().get("/api/scenarios/A/exports/scene.zip");
-    ASSERT_EQ(answer.status, 200) << answer.body;
-    const auto archive = scene_.folder() / "removed.zip";
-    std::ofstream(archive, std::ios::binary) << answer.body;
-    const auto unpacked = scene::unpack_bundle(archive, scene_.folder() / "removed", {}, foreign_reader());
-    ASSERT_TRUE(unpacked) << unpacked.error().message;
-    const auto again = scene::load_scene(unpacked->scene);
-    ASSERT_TRUE(again) << again.error().message;
-    EXPECT_TRUE(again->buildings.empty());
-    EXPECT_EQ(again->releases.size(), 1U);
-    EXPECT_THAT(read_text(unpacked->scene), HasSubstr("Left out: releases"));
+    const scene::Scene again = scene_of_archive("removed");
+    EXPECT_TRUE(again.buildings.empty());
+    EXPECT_EQ(again.releases.size(), 1U);
+    EXPECT_THAT(scene_text_, HasSubstr("Left out: release \"Second\", which was not triggered."));
 }
 
 TEST_F(TablesTest, a_calibration_fits_those_of_scenario_A) {
