@@ -195,6 +195,9 @@ try {
     const view = await page.locator(".view canvas").boundingBox();
     await page.mouse.click(view.x + view.width / 2, view.y + view.height / 2);
     await page.waitForFunction(() => /peaks\s.*\sm,\s.*\sm\/s/.test(document.querySelector(".probes")?.innerText ?? ""));
+    for (const what of [".placed .group-head button", ".placed > .hint", ".placed li > button:not(.item)"]) {
+      same(await page.locator(what).filter({ visible: true }).count(), 0, `shown ${what}`);
+    }
   });
   await check("report, tables and journal are saved from the file", async () => {
     await page.getByRole("button", { name: "Export" }).click();

@@ -55,7 +55,7 @@ function listOf(twin: Twin, stage: Stage, what: Named): HTMLElement {
     list.replaceChildren(...(setup ? kind.of(setup) : []).map((pin) => row(twin, stage, what, pin, hindrance !== null)));
     hint.hidden = list.childElementCount > 0;
   });
-  return h("section", {}, h("div", { class: "group-head" }, h("h3", {}, kind.title), add), hint, list);
+  return h("section", { class: "placed" }, h("div", { class: "group-head" }, h("h3", {}, kind.title), add), hint, list);
 }
 
 function row(twin: Twin, stage: Stage, what: Named, pin: Pin, fixed: boolean): HTMLElement {

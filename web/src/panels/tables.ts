@@ -35,7 +35,7 @@ export function tableList(twin: Twin, stage: Stage, kind: TableKind, pick: (() =
     add.title = hindrance ?? does;
     list.replaceChildren(...entriesOf(twin.cells[scenarioOf(twin, kind)].setup.value, kind).map((entry) => row(twin, stage, kind, entry, hindrance !== null)));
   });
-  return h("section", {}, h("div", { class: "group-head" }, h("h3", {}, title), add), list, h("p", { class: "hint" }, hint));
+  return h("section", { class: "placed" }, h("div", { class: "group-head" }, h("h3", {}, title), add), list, h("p", { class: "hint" }, hint));
 }
 
 /** Triggers are those of the first scenario, whichever is edited. */
