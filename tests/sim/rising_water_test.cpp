@@ -139,8 +139,8 @@ Simulation wet_layer(Rows water, params::PorePressure law, params::BackendChoice
     return testing::simulate(material, solver, terrain, {release}, 0.5);
 }
 
-void advance_to(Simulation& run, double time) {
-    while (run.summary().time < time) {
+void advance_to_failure(Simulation& run, double latest) {
+    while (run.summary().time < latest) {
         ASSERT_TRUE(run.advance());
         if (run.summary().water_of_release.at(0).failed != 0) return;
     }
@@ -151,7 +151,7 @@ const double critical = 1 - std::tan(25 * M_PI / 180) / 0.7;  // 0.334
 TEST(RisingWater, lets_a_layer_fail_about_where_friction_is_as_steep_as_the_slope) {
     for (const auto law : {params::PorePressure::prescribed, params::PorePressure::dilatancy}) {
         Simulation run = wet_layer({{0, 0.2}, {10, 0.5}}, law);
-        advance_to(run, 10);
+        advance_to_failure(run, 10);
         const Water& water = run.summary().water_of_release.at(0);
         ASSERT_EQ(water.failed, 1U);
         // A layer with ends slides a little early, and takes a few seconds for its first spacing, at 0.03 a second.
@@ -162,7 +162,7 @@ TEST(RisingWater, lets_a_layer_fail_about_where_friction_is_as_steep_as_the_slop
 
 TEST(RisingWater, leaves_a_layer_where_it_is_and_awake_while_friction_holds_it) {
     Simulation run = wet_layer({{0, 0.1}, {4, 0.22}}, params::PorePressure::prescribed);
-    advance_to(run, 5);
+    advance_to_failure(run, 5);
     EXPECT_EQ(run.summary().water_of_release.at(0).failed, 0U);
     EXPECT_EQ(run.summary().awake, run.summary().count);
     EXPECT_NEAR(run.summary().water_of_release[0].ratio, 0.22, 1e-6);
