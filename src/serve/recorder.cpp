@@ -13,10 +13,10 @@
 #include <fmt/format.h>
 
 #include "core/try.hpp"
-#include "observe/map_names.hpp"
 #include "serve/library.hpp"
 #include "serve/site_archive.hpp"
 #include "session/json_text.hpp"
+#include "twin/past_maps.hpp"
 
 namespace talus::serve {
 namespace {
@@ -184,7 +184,7 @@ Status record_scenario(Asker& asker, publish::Tape& tape, RecordedRun& run, cons
     for (const char* question : {"series", "impacts", "gauges", "observed", "figures", "recording", "journal"}) {
         TALUS_TRY(keep(asker, tape, of + question));
     }
-    for (const std::string_view layer : observe::map_keys("depth", "erosion_depth")) {
+    for (const std::string_view layer : twin::run_layers()) {
         TALUS_TRY(keep(asker, tape, fmt::format("{}layers/{}", of, layer)));
     }
     TALUS_ASSIGN(const json recording, asker.get_json(of + "recording"));
@@ -207,7 +207,7 @@ Status record_scenario(Asker& asker, publish::Tape& tape, RecordedRun& run, cons
         TALUS_TRY(keep_at(asker, tape, of + "gauges", time));
     }
     for (const double time : some_of(frames, past_maps)) {
-        for (const std::string_view layer : observe::map_keys("depth", "erosion_depth")) {
+        for (const std::string_view layer : twin::run_layers()) {
             TALUS_TRY(keep_at(asker, tape, fmt::format("{}layers/{}", of, layer), time));
         }
     }

@@ -7,6 +7,7 @@
 #include <zlib.h>
 
 #include "core/grid.hpp"
+#include "twin/pore_pressure_map.hpp"
 #include "twin/scenario.hpp"
 
 namespace talus::twin {
@@ -95,6 +96,11 @@ Bounds bounds_of(const sim::State& state) {
 
 }  // namespace
 
+double Frame::pore_pressure_ratio_in(std::size_t cell) const {
+    if (cell >= pore_pressure.size() || pore_pressure[cell] == no_pore_pressure) return observe::never;
+    return pore_pressure[cell] * pore_pressure_step;
+}
+
 Frame make_frame(const sim::State& state, const observe::MapAccumulator::Present& debris, std::uint32_t slots,
                  unsigned stride, unsigned flags) {
     Frame frame;
@@ -178,7 +184,8 @@ void read_window(const Frame& frame, std::size_t count, const Take& take) {
     for (std::size_t k = 0; k < count; ++k) {
         depth = static_cast<std::uint16_t>(depth + unfold(static_cast<std::uint16_t>(low[k] | low[m + k] << 8)));
         take(k, DebrisAt{depth * static_cast<double>(frame.depth_unit),
-                         low[2 * m + k] * static_cast<double>(frame.depth_speed_unit), frame.density_in(k)});
+                         low[2 * m + k] * static_cast<double>(frame.depth_speed_unit), frame.density_in(k),
+                         frame.pore_pressure_ratio_in(k)});
     }
 }
 

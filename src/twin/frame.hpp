@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstdint>
+#include <limits>
 #include <memory>
 #include <string>
 #include <vector>
@@ -17,16 +18,20 @@ struct Frame {
     std::uint64_t step = 0;
     unsigned flags = 0;
     std::uint32_t slots = 0, stride = 1;
-    std::array<float, 3> zero{}, unit{};    ///< local m
-    float speed_unit = 0;                   ///< m/s
-    std::array<std::uint32_t, 4> window{};  ///< first column, first row, columns, rows
-    float depth_unit = 0;                   ///< m
-    float depth_speed_unit = 0;             ///< m/s
-    double rest_density = 0;                ///< kg/m3, at that time; not sent
-    std::vector<float> densities;           ///< kg/m3, by cell of the window; empty: rest_density. Not sent
-    std::vector<std::uint8_t> body;         ///< byte planes
+    std::array<float, 3> zero{}, unit{};      ///< local m
+    float speed_unit = 0;                     ///< m/s
+    std::array<std::uint32_t, 4> window{};    ///< first column, first row, columns, rows
+    float depth_unit = 0;                     ///< m
+    float depth_speed_unit = 0;               ///< m/s
+    double rest_density = 0;                  ///< kg/m3, at that time; not sent
+    std::vector<float> densities;             ///< kg/m3, by cell of the window; empty: rest_density. Not sent
+    std::vector<std::uint8_t> body;           ///< byte planes
+    std::vector<std::uint8_t> pore_pressure;  ///< pore_pressure_map() of the window; empty: there is none. Not sent
 
-    [[nodiscard]] std::size_t bytes() const { return sizeof(Frame) + body.size() + densities.size() * sizeof(float); }
+    [[nodiscard]] std::size_t bytes() const {
+        return sizeof(Frame) + body.size() + pore_pressure.size() + densities.size() * sizeof(float);
+    }
+    [[nodiscard]] double pore_pressure_ratio_in(std::size_t cell) const;
     [[nodiscard]] double density_in(std::size_t cell) const {
         return cell < densities.size() ? static_cast<double>(densities[cell]) : rest_density;
     }
@@ -42,9 +47,11 @@ using FramePtr = std::shared_ptr<const Frame>;
 /// The frame as sent to clients.
 [[nodiscard]] std::string encode(const Frame& frame, int scenario_index, unsigned further_flags = 0);
 
-/// Depth, m, depth-averaged speed, m/s, and density, kg/m3, in a cell of the map grid; 0 outside the window.
+/// Depth, m, depth-averaged speed, m/s, density, kg/m3, and ratio of pore pressure in a cell of the map grid; 0 outside
+/// the window. NaN: no pore pressure is known there.
 struct DebrisAt {
     double depth = 0, speed = 0, density = 0;
+    double pore_pressure_ratio = std::numeric_limits<double>::quiet_NaN();
 };
 [[nodiscard]] DebrisAt debris_at(const Frame& frame, std::uint32_t column, std::uint32_t row);
 

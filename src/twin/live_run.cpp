@@ -6,6 +6,7 @@
 
 #include "core/try.hpp"
 #include "sim/compression.hpp"
+#include "twin/pore_pressure_map.hpp"
 
 namespace talus::twin {
 Result<std::unique_ptr<LiveRun>> LiveRun::start(const scene::Scene& scene, const Setup& setup, double spacing,
@@ -58,9 +59,11 @@ const run::RunVerdict& LiveRun::verdict() const {
 }
 
 FramePtr LiveRun::frame(unsigned stride, unsigned flags) const {
-    auto frame = std::make_shared<Frame>(make_frame(state(), observer().maps().present(), slots_, stride,
-                                                    flags | (too_compressed() ? frame_too_compressed : 0)));
+    const observe::MapAccumulator::Present present = observer().maps().present();
+    auto frame = std::make_shared<Frame>(
+        make_frame(state(), present, slots_, stride, flags | (too_compressed() ? frame_too_compressed : 0)));
     frame->rest_density = model().rest_density;
+    frame->pore_pressure = pore_pressure_map(model(), ground(), state(), present.depth);
     return frame;
 }
 

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "observe/map_names.hpp"
+
 namespace talus::twin {
 namespace {
 
@@ -45,6 +47,7 @@ void for_each_cell(const Frame& frame, const GridGeometry& map, const GridGeomet
 /// The value of a layer for one frame's debris in a cell; below 0: none.
 double value_of(const std::string& name, const DebrisAt& debris) {
     if (name == "peak_speed") return debris.speed;
+    if (name == pore_pressure_layer) return debris.pore_pressure_ratio;
     if (name == "peak_pressure") return debris.density * debris.speed * debris.speed;
     return debris.depth;
 }
@@ -59,21 +62,27 @@ Grid<float> past_arrival(const Grid<float>& now, double time) {
 
 }  // namespace
 
+std::vector<std::string_view> run_layers() {
+    std::vector<std::string_view> names = observe::map_keys("depth");
+    names.insert(names.end(), {pore_pressure_layer, "erosion_depth"});
+    return names;
+}
+
 Grid<float> past_layer(const std::string& name, const std::vector<FramePtr>& frames, const MapFrame& map) {
     if (frames.empty()) return Grid<float>({map.geometry.x_min, map.geometry.y_min, map.geometry.cell, 1, 1}, nothing);
     if (name == "arrival_time") return past_arrival(map.arrival_now, frames.back()->time);
     Grid<float> layer(common_window(frames, map.geometry), nothing);
-    // "depth" is that of the last frame; so is the deposit depth, wherever debris has been.
-    const bool peaks = name.starts_with("peak_");
+    // "depth" and the pore pressure are those of the last frame; so is the deposit depth, wherever debris has been.
+    const bool peaks = name.starts_with("peak_"), now_alone = name == "depth" || name == pore_pressure_layer;
     for (const FramePtr& frame : frames) {
         const bool last = frame == frames.back();
-        if (name == "depth" && !last) continue;
+        if (now_alone && !last) continue;
         for_each_cell(*frame, map.geometry, layer.geometry, [&](std::size_t k, const DebrisAt& debris) {
             if (debris.depth <= 0) return;
             float& value = layer.values[k];
-            if (debris.depth >= map.thinnest && name != "depth" && std::isnan(value)) value = 0;
+            if (debris.depth >= map.thinnest && !now_alone && std::isnan(value)) value = 0;
             if (!peaks && !last) return;
-            if (name != "depth" && std::isnan(value)) return;
+            if (!now_alone && std::isnan(value)) return;
             const auto now = static_cast<float>(value_of(name, debris));
             value = std::isnan(value) ? now : std::max(value, now);
         });

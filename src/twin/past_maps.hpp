@@ -1,12 +1,18 @@
 #pragma once
 
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "core/grid.hpp"
 #include "twin/frame.hpp"
 
 namespace talus::twin {
+
+inline constexpr std::string_view pore_pressure_layer = "pore_pressure_ratio";
+
+/// The names of the layers of Scenario::layer.
+[[nodiscard]] std::vector<std::string_view> run_layers();
 
 /// Properties of the current map that past ones share: the cells, and the least depth that counts as debris.
 struct MapFrame {

@@ -16,6 +16,7 @@
 #include "scene/viscosity_limit.hpp"
 #include "twin/gauges_json.hpp"
 #include "twin/json_keys.hpp"
+#include "twin/pore_pressure_map.hpp"
 #include "twin/scenario_parts.hpp"
 #include "twin/table_entry.hpp"
 
@@ -235,6 +236,7 @@ json Scenario::state_json(bool with_hash) const {
                    {"particles", state.count},
                    {"volume_released_m3", now.volume_released},
                    {"volume_entrained_m3", now.volume_entrained},
+                   {"pore_pressure", knows_pore_pressure(run.model())},
                    {"volume_held_m3", now.volume_held},
                    {"volume_moving_m3", now.volume_moving},
                    {"volume_deposited_m3", now.volume_deposited},
@@ -334,7 +336,8 @@ json Scenario::recording_json() const {
 namespace {
 
 json read_probe(const std::vector<FramePtr>& frames, const GridGeometry& map, const PlanPoint& p) {
-    json times = json::array(), depths = json::array(), speeds = json::array(), pressures = json::array();
+    json times = json::array(), depths = json::array(), speeds = json::array(), pressures = json::array(),
+         ratios = json::array();
     const double column = std::floor((p.x - map.x_min) / map.cell), row = std::floor((p.y - map.y_min) / map.cell);
     const bool on_map = column >= 0 && row >= 0 && column < map.columns && row < map.rows;
     for (const FramePtr& frame : frames) {
@@ -345,8 +348,13 @@ json read_probe(const std::vector<FramePtr>& frames, const GridGeometry& map, co
         depths.push_back(here.depth);
         speeds.push_back(here.speed);
         pressures.push_back(here.density * here.speed * here.speed / 1e3);
+        ratios.push_back(number_or_null<json>(here.pore_pressure_ratio));
     }
-    return {{"time_s", times}, {"depth_m", depths}, {"speed_mps", speeds}, {"pressure_kPa", pressures}};
+    return {{"time_s", times},
+            {"depth_m", depths},
+            {"speed_mps", speeds},
+            {"pressure_kPa", pressures},
+            {"pore_pressure_ratio", ratios}};
 }
 
 }  // namespace

@@ -59,7 +59,7 @@ std::vector<std::string> obstacle_notes(const LiveRun& run) {
 }  // namespace
 
 Result<std::function<Grid<float>()>> Scenario::layer(const std::string& name, std::optional<double> time) const {
-    const auto layer_names = observe::map_keys("depth", "erosion_depth");
+    const std::vector<std::string_view> layer_names = run_layers();
     if (std::find(layer_names.begin(), layer_names.end(), name) == layer_names.end()) {
         return Error{fmt::format("layer = {}: must be one of {}", shown(json(name)), fmt::join(layer_names, ", "))};
     }
@@ -73,7 +73,8 @@ Result<std::function<Grid<float>()>> Scenario::layer(const std::string& name, st
         return std::function<Grid<float>()>([terrain = run.ground().terrain.elevation().geometry,
                                              eroded = run.eroded(then)] { return erosion_layer(terrain, eroded); });
     }
-    if (!time) return std::function<Grid<float>()>([grid = present_layer(maps, name)] { return grid; });
+    if (name == pore_pressure_layer && !time) frames = {run.frame(1, 0)};
+    if (frames.empty()) return std::function<Grid<float>()>([grid = present_layer(maps, name)] { return grid; });
     MapFrame frame{maps.geometry(), maps.thinnest_depth(), {}};
     if (name == "arrival_time") frame.arrival_now = maps.maps().arrival_time;
     return std::function<Grid<float>()>(

@@ -8,8 +8,8 @@ import { button, h } from "../ui/dom";
 import { besideColour } from "../ui/theme";
 import { Chart, joined, type Curve } from "./chart";
 
-type Quantity = "depth_m" | "speed_mps" | "pressure_kPa";
-const kinds: [Quantity, string, string][] = [["depth_m", "Depth", "m"], ["speed_mps", "Speed", "m/s"], ["pressure_kPa", "Dynamic pressure", "kPa"]];
+type Quantity = "depth_m" | "speed_mps" | "pressure_kPa" | "pore_pressure_ratio";
+const kinds: [Quantity, string, string][] = [["depth_m", "Depth", "m"], ["speed_mps", "Speed", "m/s"], ["pressure_kPa", "Dynamic pressure", "kPa"], ["pore_pressure_ratio", "Pore-pressure ratio", ""]];
 
 export class Probes {
   readonly element: HTMLElement;
@@ -78,7 +78,11 @@ export class Probes {
           curves.push({ label: `${i + 1}${twin.shown.value.length > 1 ? ` ${name}` : ""}`, unit, colour: second ? besideColour(probe.colour) : probe.colour, dashed: second });
         }
       });
-      this.charts[c]?.update(tables.length > 0 ? joined(tables) : [[]], curves);
+      const chart = this.charts[c];
+      if (!chart) return;
+      // Most debris has no pore pressure.
+      if (kind === "pore_pressure_ratio") chart.element.hidden = !tables.some(({ y }) => y.some((value) => value !== null));
+      chart.update(tables.length > 0 ? joined(tables) : [[]], curves);
     });
   }
 }

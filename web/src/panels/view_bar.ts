@@ -1,6 +1,6 @@
 // Display options: camera, debris, layers.
 import type { ShownLayer } from "../protocol/layers";
-import { layerNames } from "../protocol/messages";
+import { layerNames, type LayerName, type State } from "../protocol/messages";
 import { ensembleLayer, ensembleTitle, infoOf, isEnsembleLayer, layerInfo } from "../scene/layers";
 import type { CameraMode, Viewpoint } from "../scene/rig";
 import type { Stage } from "../scene/stage";
@@ -72,11 +72,15 @@ export function viewBar(twin: Twin, stage: Stage): ViewBar {
     h("option", { value: "off" }, "no surface"), h("option", { value: "depth" }, "surface by depth"), h("option", { value: "speed" }, "surface by speed"));
   const layer = h("select", { "aria-label": "Map layer on the ground", onchange: () => (twin.layer.value = layer.value as ShownLayer | "none") },
     h("option", { value: "none" }, "no layer"), ...layerNames.map((name) => h("option", { value: name, title: layerInfo[name].help }, layerInfo[name].title)), depthAveragedOptions(twin));
-  // A selected layer remains in the list, also while there is no erosion again.
-  const erosion = layer.querySelector<HTMLOptionElement>("option[value=erosion_depth]");
+  // A selected layer remains in the list, also while there is nothing of it again.
+  const offerWhere = (name: LayerName, has: (state: State) => boolean): void => {
+    const option = layer.querySelector<HTMLOptionElement>(`option[value=${name}]`);
+    const some = twin.shown.value.some((s) => { const state = twin.cells[s].state.value; return state !== null && has(state); });
+    if (option) option.hidden = option.disabled = !some && twin.layer.value !== name;
+  };
   watchAll([...twin.every("state"), twin.layer], () => {
-    const some = twin.shown.value.some((s) => (twin.cells[s].state.value?.volume_entrained_m3 ?? 0) > 0);
-    if (erosion) erosion.hidden = erosion.disabled = !some && twin.layer.value !== "erosion_depth";
+    offerWhere("erosion_depth", (state) => state.volume_entrained_m3 > 0);
+    offerWhere("pore_pressure_ratio", (state) => state.pore_pressure);
   });
   twin.ensembles.watch((list) => {
     layer.querySelectorAll("optgroup:not(.depth-averaged)").forEach((group) => group.remove());

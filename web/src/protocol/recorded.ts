@@ -75,12 +75,12 @@ export class Recorded implements Transport {
     };
   }
 
-  /** What passed at a point: from the frames, as the session reads it. They do not hold the density of a mixture, so there is no pressure. */
+  /** What passed at a point: from the frames, as the session reads it. They do not hold the density of a mixture, so there is no pressure, nor that of the pores. */
   private async probe(address: string, x: number, y: number): Promise<ProbeSeries> {
     const scene = JSON.parse(new TextDecoder().decode((await this.tape.find("scene", null))?.body ?? new Uint8Array())) as SceneInfo;
     const column = Math.floor((x - scene.map.x_min_m) / scene.map.cell_m);
     const row = Math.floor((y - scene.map.y_min_m) / scene.map.cell_m);
-    const series: ProbeSeries = { time_s: [], depth_m: [], speed_mps: [], pressure_kPa: [] };
+    const series: ProbeSeries = { time_s: [], depth_m: [], speed_mps: [], pressure_kPa: [], pore_pressure_ratio: [] };
     for (const time of this.tape.times(address)) {
       const found = await this.tape.find(address, time);
       if (!found) continue;
@@ -89,6 +89,7 @@ export class Recorded implements Transport {
       series.depth_m.push(here.depth_m);
       series.speed_mps.push(here.speed_mps);
       series.pressure_kPa.push(null);
+      series.pore_pressure_ratio.push(null);
     }
     return series;
   }

@@ -80,6 +80,7 @@ export const ramps = {
   /** Share of an ensemble's runs: as in its GeoTIFF styles. */
   probability: ramp(300, 0.05, 262, 0.13, 0.94, 0.26),
   deposit_depth: ramp(92, 0.07, 42, 0.09, 0.92, 0.28),
+  pore_pressure_ratio: ramp(92, 0.06, 262, 0.14, 0.95, 0.3),
   erosion_depth: ramp(25, 0.07, 52, 0.13, 0.92, 0.3),
 } as const;
 

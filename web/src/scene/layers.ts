@@ -24,6 +24,7 @@ export const layerInfo: Record<LayerName, LayerInfo> = {
   peak_pressure: { title: "Peak dynamic pressure", unit: "kPa", ramp: ramps.peak_pressure, help: "Largest dynamic pressure of the free flow so far: density times speed squared" },
   arrival_time: { title: "Arrival time", unit: "s", ramp: ramps.arrival_time, help: "Time when debris first arrived" },
   deposit_depth: { title: "Deposit depth", unit: "m", ramp: ramps.deposit_depth, help: "Depth of debris as it lies" },
+  pore_pressure_ratio: { title: "Pore-pressure ratio", unit: "", ramp: ramps.pore_pressure_ratio, help: "Pore pressure at this moment, over the weight of the debris above: 1 bears all of it" },
   erosion_depth: { title: "Erosion", unit: "m", ramp: ramps.erosion_depth, help: "Depth that debris entrained from the bed, vertical: the ground is lower by it" },
 };
 
@@ -96,7 +97,7 @@ export function inUnit(name: LayerName, grid: Grid): Grid {
 /** Values below this are not drawn; times count from 0. */
 const least: Record<LayerName, number> = {
   depth: 0.01, peak_depth: 0.01, peak_speed: 0.05, peak_pressure: 0.01, arrival_time: 0, deposit_depth: 0.02,
-  erosion_depth: 0,
+  pore_pressure_ratio: 0, erosion_depth: 0,
 };
 
 /** Values of the layer that are shown, NaN elsewhere. */
