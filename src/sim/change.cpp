@@ -73,6 +73,10 @@ void make_room_for_soil(const Model& model, State& state) {
     state.soil_of_id.resize(state.seeded);
 }
 
+void forget_soil(const Model& model, State& state) {
+    if (model.evolving_pressure.on) std::fill(state.soil_of_id.begin(), state.soil_of_id.end(), Soil<float>{});
+}
+
 void remove_particles(State& state, std::uint32_t first, std::uint32_t last) {
     state.removed += state.remove_if([&](std::uint32_t i) { return state.id[i] >= first && state.id[i] < last; },
                                      [](std::uint32_t, std::uint32_t) {});

@@ -28,6 +28,9 @@ void set_entry(const Model& model, State& state, std::uint32_t particle, double 
 
 /// With evolving pore pressure, soil_of_id must have an element per particle ever added before a step.
 void make_room_for_soil(const Model& model, State& state);
+/// Pore pressure and solid fraction are those of the start again, as before the first step. Where steps only search for
+/// the pressures between particles, nothing has flowed.
+void forget_soil(const Model& model, State& state);
 
 /// Removes the particles with ids [first, last); those that left the terrain remain counted as outflow.
 void remove_particles(State& state, std::uint32_t first, std::uint32_t last);

@@ -5,6 +5,7 @@
 #include <numeric>
 #include <utility>
 
+#include "sim/change.hpp"
 #include "sim/cpu/backend.hpp"
 #include "sim/step.hpp"
 
@@ -21,6 +22,7 @@ void relax_quasi_static(const Model& model, const Ground& ground, State& state, 
         for (auto* component : {&state.velocity.x, &state.velocity.y, &state.velocity.z}) {
             std::fill(component->begin(), component->end(), 0.0f);
         }
+        forget_soil(model, state);
         if (done(state)) break;
     }
 }
@@ -54,6 +56,7 @@ Model without_forces(const Model& model) {
     still.inertial_friction = {};
     still.samosat = {};
     still.cover = {};
+    still.evolving_pressure.on = false;  // its laws divide by the weight
     still.solver.internal_friction = params::InternalFriction::pair;
     return still;
 }
@@ -87,6 +90,7 @@ bool relax(const Model& model, const Ground& ground, State& state, const std::ve
     still.building_friction_coefficient = model.building_friction_coefficient;
     still.cohesion = model.cohesion;
     still.cover = model.cover;
+    still.evolving_pressure = model.evolving_pressure;
     state.time_step = state.previous_time_step = model.largest_time_step() / 4;
     const double scale = -model.gravity * state.time_step * state.time_step;
     for (std::uint32_t i = 0; i < state.count; ++i) {

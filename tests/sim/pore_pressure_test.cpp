@@ -210,6 +210,17 @@ double mean_way(const State& state, const State& from) {
     return sum / state.count;
 }
 
+TEST(EvolvingPorePressure, starts_hydrostatic_and_with_the_solid_fraction_of_the_release) {
+    Simulation run = layer(0.6);
+    ASSERT_TRUE(run.advance());
+    const double rest = hydrostatic(run.model().evolving_pressure, 0.6);
+    ASSERT_EQ(run.state().soil_of_id.size(), run.state().seeded);
+    for (const Soil<float>& s : run.state().soil_of_id) {
+        ASSERT_NEAR(s.pressure_ratio, rest, 0.1) << "changed by one step alone, not by the search for a state at rest";
+        ASSERT_NEAR(s.solid_fraction, 0.6, 1e-4);
+    }
+}
+
 TEST(EvolvingPorePressure, lets_loose_debris_run_and_holds_dense_debris) {
     Simulation loose = layer(0.55), dense = layer(0.68);
     const State loose_start = loose.state(), dense_start = dense.state();

@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "core/try.hpp"
+#include "sim/change.hpp"
 #include "sim/cpu/backend.hpp"
 #include "sim/relax.hpp"
 #include "sim/step.hpp"
@@ -113,6 +114,7 @@ void find_pressures(const Model& model, const Ground& ground, State& state) {
             state.position.set(i, start.position.at(state.id[i]));
             state.velocity.set(i, start.velocity.at(state.id[i]));
         }
+        forget_soil(awake, state);
     }
     state.time = start.time;
     state.step = start.step;
