@@ -14,7 +14,8 @@ methods named after them are used.
 """
 
 from ._library import FaultError, InputError, TalusError, version
-from .ensembles import Calibration, Design, Ensemble, Risk, calibrate, design, ensemble, options, risk
+from .decisions import Design, Risk, design, options, risk
+from .ensembles import Calibration, Ensemble, calibrate, ensemble
 from .maps import UNITS, Map, read_geotiff, write_geotiff
 from .measures import Energy, Front, Gauge, RunOut, Structure
 from .simulation import Building, Phase, Simulation
