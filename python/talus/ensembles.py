@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import Any, Mapping, Sequence
 
 from . import _arguments as arguments
+from ._library import InputError
 from ._runs import Folder, Scene, Vary, command_words, numbers, run, share_done, with_warnings
 from .maps import Map, read_geotiff
 from .simulation import Progress, Settings
