@@ -6,6 +6,7 @@
 #include <limits>
 #include <numbers>
 
+#include "core/cube_root.hpp"
 #include "sim/change.hpp"
 #include "sim/physics/erosion.hpp"
 #include "sim/physics/net.hpp"
@@ -19,6 +20,11 @@ constexpr float reach_in_spacings = 4;  ///< distance within which a new particl
 constexpr float sites_apart = 3.5F;     ///< minimum distance between sites of one step, in spacings
 constexpr float foot_offset = 1.2F;     ///< maximum distance from the particle below which ground comes loose, in
                                         ///< spacings
+
+/// A direction in plan.
+struct Spoke {
+    float x = 0, y = 0;
+};
 
 /// Particles are not a continuum: with a quarter more room than the new particle's volume, the peak compression is
 /// halved; with half more, a gap remains into which debris above falls.
@@ -166,12 +172,16 @@ void Entrainment::choose_foot(const Model& model, const Ground& ground, const St
     const auto spacing = static_cast<float>(model.particle_spacing), touching = spacing / 2;
     const LocalPoint above = site.foot;
     float best = -1;
-    constexpr int around = 8, rings = 3;
+    constexpr int rings = 3;
+    constexpr float half = std::numbers::sqrt2_v<float> / 2;
+    constexpr std::array<Spoke, 8> spokes = {
+        {{1, 0}, {half, half}, {0, 1}, {-half, half}, {-1, 0}, {-half, -half}, {0, -1}, {half, -half}}};
+    constexpr int around = spokes.size();
     for (int k = 0; k <= rings * around; ++k) {
-        const int spoke = k % around, ring = (k + around - 1) / around;
-        const float angle = static_cast<float>(spoke) * 2 * std::numbers::pi_v<float> / around;
+        const int ring = (k + around - 1) / around;
+        const Spoke& spoke = spokes.at(static_cast<std::size_t>(k % around));
         const float offset = foot_offset * spacing * static_cast<float>(ring) / rings;
-        const float x = above.x + offset * std::cos(angle), y = above.y + offset * std::sin(angle);
+        const float x = above.x + offset * spoke.x, y = above.y + offset * spoke.y;
         if (!ground.terrain.covers(x, y)) continue;
         const terrain::GroundSample<float> below = ground.terrain.sample(x, y);
         const LocalPoint foot{x, y, below.height}, place = foot + below.normal * touching;
@@ -206,7 +216,7 @@ void Entrainment::make_room(const Model& model, const Ground& ground, State& sta
         const LocalPoint away = p - site.foot;
         const float distance = length(away);
         if (!(distance > 0) || distance > reach) continue;
-        p += away * (std::cbrt(distance * distance * distance + room) / distance - 1);
+        p += away * (cube_root(distance * distance * distance + room) / distance - 1);
         if (!ground.terrain.covers(p.x, p.y)) continue;
         push_out_of_solids(model, ground, p, grain_rank(state.id[i]), [](const LocalPoint&) {});
         state.position.set(i, p);
