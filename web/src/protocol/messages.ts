@@ -390,6 +390,8 @@ export interface State {
   volume_released_m3: number;
   /** Entrained from the bed. */
   volume_entrained_m3: number;
+  /** Whether the layer pore_pressure_ratio has values. */
+  pore_pressure: boolean;
   /** Not started yet. */
   volume_held_m3: number;
   /** Moving now. */
@@ -817,6 +819,8 @@ export interface ProbeSeries {
   speed_mps: Column;
   /** Dynamic: density times square of the speed. */
   pressure_kPa: Column;
+  /** Of the debris; null: none is known there. */
+  pore_pressure_ratio: Column;
 }
 
 /** Which frames are recorded. */
@@ -1087,7 +1091,7 @@ export interface WantedCalibration {
 }
 
 /** What a run has a map of. */
-export const layerNames = ["depth", "peak_depth", "peak_speed", "peak_pressure", "arrival_time", "deposit_depth", "erosion_depth"] as const;
+export const layerNames = ["depth", "peak_depth", "peak_speed", "peak_pressure", "arrival_time", "deposit_depth", "pore_pressure_ratio", "erosion_depth"] as const;
 export type LayerName = (typeof layerNames)[number];
 
 /** What the depth-averaged model has a map of. */
