@@ -9,7 +9,7 @@
 namespace talus::twin::test {
 namespace {
 
-constexpr const char* name = "pore_pressure_ratio";
+constexpr const char* ratio = "pore_pressure_ratio";
 
 /// Least and greatest value, and in how many cells there is one.
 struct Spread {
@@ -32,15 +32,15 @@ TEST(PorePressureMap, is_that_of_the_debris_now_and_then) {
     scene.spec.material.pore_pressure_ratio = 0.4;
     const auto scenario = open(std::move(scene));
     run_until(*scenario, 2);
-    const Spread now = spread_of(layer(*scenario, name));
+    const Spread now = spread_of(layer(*scenario, ratio));
     EXPECT_NEAR(now.least, 0.4, 0.003);
     EXPECT_NEAR(now.greatest, 0.4, 0.003);
     EXPECT_EQ(now.cells, spread_of(layer(*scenario, "depth")).cells) << "wherever there is debris";
 
     act(*scenario, {{"action", "set_parameter"}, {"key", "material.pore_pressure_ratio"}, {"value", 0.6}});
     run_until(*scenario, 3);
-    EXPECT_NEAR(spread_of(layer(*scenario, name)).greatest, 0.6, 0.003);
-    const Spread then = spread_of((*scenario->layer(name, 1.5))());
+    EXPECT_NEAR(spread_of(layer(*scenario, ratio)).greatest, 0.6, 0.003);
+    const Spread then = spread_of((*scenario->layer(ratio, 1.5))());
     EXPECT_NEAR(then.greatest, 0.4, 0.003);
     EXPECT_GT(then.cells, 20);
     EXPECT_EQ(scenario->state_json()["pore_pressure"], true);
@@ -57,7 +57,7 @@ TEST(PorePressureMap, has_the_state_of_soil_whose_pressure_evolves) {
     material.rest_density = 1100 + 1600 * 0.5;
     const auto scenario = open(std::move(scene));
     run_until(*scenario, 2);
-    const Spread now = spread_of(layer(*scenario, name));
+    const Spread now = spread_of(layer(*scenario, ratio));
     EXPECT_GT(now.greatest, 0.8) << "loose soil liquefies";
     EXPECT_LE(now.greatest, 1.2);
     EXPECT_GT(now.cells, 20);
@@ -71,17 +71,17 @@ TEST(PorePressureMap, has_the_state_of_soil_whose_pressure_evolves) {
     const PlanPoint there =
         depth.geometry.centre(static_cast<int>(deepest) % columns, static_cast<int>(deepest) / columns);
     const json series = scenario->probe(there)();
-    ASSERT_EQ(series[name].size(), series["time_s"].size());
-    EXPECT_NEAR(series[name].back().get<double>(), now.greatest, 0.4);
-    EXPECT_TRUE(scenario->probe({west + 1, south + 1})()[name].back().is_null()) << "no debris has been there";
+    ASSERT_EQ(series[ratio].size(), series["time_s"].size());
+    EXPECT_NEAR(series[ratio].back().get<double>(), now.greatest, 0.4);
+    EXPECT_TRUE(scenario->probe({west + 1, south + 1})()[ratio].back().is_null()) << "no debris has been there";
 }
 
 TEST(PorePressureMap, of_debris_without_pore_pressure_is_empty) {
     const auto scenario = open(channel_scene());
     run_until(*scenario, 1);
-    EXPECT_EQ(spread_of(layer(*scenario, name)).cells, 0);
+    EXPECT_EQ(spread_of(layer(*scenario, ratio)).cells, 0);
     EXPECT_EQ(scenario->state_json()["pore_pressure"], false);
-    EXPECT_TRUE(scenario->probe({west + 12, south + 30})()[name].back().is_null());
+    EXPECT_TRUE(scenario->probe({west + 12, south + 30})()[ratio].back().is_null());
 }
 
 }  // namespace
