@@ -27,7 +27,6 @@ UNITS = {
     "peak_pressure": "Pa",
     "arrival_time": "s",
     "deposit_depth": "m",
-    "pore_pressure_ratio": "",
     "erosion_depth": "m",
 }
 _rounding = 1e-6  # of a cell
