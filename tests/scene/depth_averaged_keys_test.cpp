@@ -117,10 +117,12 @@ TEST_F(DepthAveragedScene, refuses_what_the_model_lacks) {
         fmt::format("[[barrier]]\nname = \"dam\"\nline_m = [[{0}, {1}], [{0}, {2}]]\nheight_m = 5\n", west + 150,
                     south + 60, south + 140);
     write_features("houses.geojson", {rectangle(150, 60, 160, 70, R"("strength": 20000, "name": "mill")")});
+    write("water.csv", "time_s,pore_pressure_ratio\n0,0.2\n60,0.5\n");
     const std::string houses = "[buildings]\nfile = \"houses.geojson\"\n";
     const std::map<std::string, std::string> scenes = {
         {"buildings.resistance_attribute", houses + "resistance_attribute = \"strength\"\n"},
         {"buildings.resistance_Pa", houses + "resistance_Pa = 20000\n"},
+        {"release.pore_pressure_hydrograph", "pore_pressure_hydrograph = \"water.csv\"\n"},
         {"barrier.passing_share", dam + "passing_share = 0.5\n"},
         {"barrier.clearance_m", dam + "clearance_m = 0.5\n"},
         {"barrier.resistance_Npm", dam + "resistance_Npm = 20000\n"},
