@@ -111,13 +111,12 @@ Json loads_table(const DesignResult& result) {
         if (method.kind == LoadKind::boulder) {
             other = std::isfinite(load.force) ? report::fixed(load.force / 1e3, 0) + " kN" : "no --boulder-diameter";
         }
-        table["rows"].push_back(
-            {{"title", method.title},
-             {"formula", method.formula()},
-             {"pressure", report::fixed(load.pressure / 1e3, 0)},
-             {"force", report::fixed(load.force_per_metre / 1e3, 0)},
-             {"other", other},
-             {"source", method.source + (method.checked ? "" : " *")}});
+        table["rows"].push_back({{"title", method.title},
+                                 {"formula", method.formula()},
+                                 {"pressure", report::fixed(load.pressure / 1e3, 0)},
+                                 {"force", report::fixed(load.force_per_metre / 1e3, 0)},
+                                 {"other", other},
+                                 {"source", method.source + (method.checked ? "" : " *")}});
     }
     return table;
 }

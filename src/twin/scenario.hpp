@@ -141,8 +141,9 @@ class Scenario {
 
     /// What passed at a point, over the recording.
     [[nodiscard]] std::function<nlohmann::json()> probe(const PlanPoint& p) const;
-    /// One of run_layers(); NaN: no value. SI units. The last has cells of the terrain, the others those of the maps. Now, or at the recorded frame
-    /// at or before a time (see past_layer; erosion is exact). Errors: no such layer, nothing recorded by that time.
+    /// One of run_layers(); NaN: no value. SI units. The last has cells of the terrain, the others those of the maps.
+    /// Now, or at the recorded frame at or before a time (see past_layer; erosion is exact). Errors: no such layer,
+    /// nothing recorded by that time.
     [[nodiscard]] Result<std::function<Grid<float>()>> layer(const std::string& name,
                                                              std::optional<double> time = {}) const;
     /// Whether debris has eroded any of its bed.

@@ -92,7 +92,7 @@ TEST(MapNames, the_description_of_the_server_has_them) {
     std::string layers = "'depth'";
     for (const NamedMap& map : named_maps) layers += fmt::format(" | '{}'", map.key);
     const std::string protocol = source("src/serve/protocol.json");
-    EXPECT_THAT(protocol, HasSubstr("\"is\": \"" + layers + " | 'erosion_depth'\""));
+    EXPECT_THAT(protocol, HasSubstr("\"is\": \"" + layers + " | 'pore_pressure_ratio' | 'erosion_depth'\""));
     EXPECT_THAT(protocol, HasSubstr("\"is\": \"" + layers + "\"")) << "of the depth-averaged model";
     const std::string exports = source("src/serve/exports.cpp");
     for (const NamedMap& map : named_maps) {

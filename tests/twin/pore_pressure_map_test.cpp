@@ -35,7 +35,7 @@ TEST(PorePressureMap, is_that_of_the_debris_now_and_then) {
     const Spread now = spread_of(layer(*scenario, ratio));
     EXPECT_NEAR(now.least, 0.4, 0.003);
     EXPECT_NEAR(now.greatest, 0.4, 0.003);
-    EXPECT_EQ(now.cells, spread_of(layer(*scenario, "depth")).cells) << "wherever there is debris";
+    EXPECT_GE(now.cells, 0.9 * spread_of(layer(*scenario, "depth")).cells) << "but for a rim thinner than 0.1 mm";
 
     act(*scenario, {{"action", "set_parameter"}, {"key", "material.pore_pressure_ratio"}, {"value", 0.6}});
     run_until(*scenario, 3);
