@@ -67,8 +67,9 @@ void Solver::let_fly() {
     for (std::vector<float>* array : {&height_, &climb_, &next_height_, &next_climb_}) array->assign(depth_.size(), 0);
 }
 
-void Solver::inject(int column, int row, double depth, double u, double v, std::optional<double> solid_fraction) {
-    mix_in(column, row, depth, u, v, start_of({}, solid_fraction));
+void Solver::inject(int column, int row, double depth, double u, double v, std::optional<double> solid_fraction,
+                    std::optional<double> pore_pressure_ratio) {
+    mix_in(column, row, depth, u, v, start_of(pore_pressure_ratio, solid_fraction));
 }
 
 void Solver::mix_in(int column, int row, double depth, double u, double v, const Start& start) {

@@ -81,8 +81,9 @@ class Solver {
     /// its r_u now; absent: that of the material. `solid_fraction`: the same, where pore pressure evolves.
     void add(const Grid<float>& depth, std::optional<double> pore_pressure_ratio = {},
              std::optional<double> solid_fraction = {});
-    /// Adds debris with a velocity and the material's r_u to a cell of known ground; momenta add up.
-    void inject(int column, int row, double depth, double u, double v, std::optional<double> solid_fraction = {});
+    /// Adds debris with a velocity to a cell of known ground; momenta add up. The last two as of add().
+    void inject(int column, int row, double depth, double u, double v, std::optional<double> solid_fraction = {},
+                std::optional<double> pore_pressure_ratio = {});
     /// What comes in to a cell from the next step on, besides what comes already.
     struct CellInflow {
         double rate = 0;             ///< m of depth per s

@@ -77,6 +77,10 @@ void add_resistances(Json& rows, const scene::Scene& scene) {
         if (release.solid_fraction) {
             add(fmt::format("Solid fraction, {}", release.name), plain(*release.solid_fraction));
         }
+        if (!release.pore_pressure_hydrograph.empty()) {
+            add(fmt::format("Pore pressure, {}", release.name), "rises as its hydrograph says, until it fails");
+            continue;
+        }
         const double ratio = release.pore_pressure_ratio.value_or(material.pore_pressure_ratio);
         if (ratio <= 0) continue;
         if (evolves) {
@@ -110,8 +114,9 @@ void add_resistances(Json& rows, const scene::Scene& scene) {
 
 bool has_pore_pressure(const params::SceneSpec& spec) {
     return spec.material.pore_pressure_ratio > 0 ||
-           std::any_of(spec.releases.begin(), spec.releases.end(),
-                       [](const params::ReleaseSpec& r) { return r.pore_pressure_ratio.value_or(0) > 0; });
+           std::any_of(spec.releases.begin(), spec.releases.end(), [](const params::ReleaseSpec& r) {
+               return r.pore_pressure_ratio.value_or(0) > 0 || !r.pore_pressure_hydrograph.empty();
+           });
 }
 
 /// The rows of a section have its name above the first.

@@ -44,6 +44,11 @@ double grid_cell(const Scene& scene) {
 }
 
 std::optional<Lacking> depth_averaged_lacks(const Scene& scene) {
+    for (std::size_t r = 0; r < scene.releases.size(); ++r) {
+        if (scene.releases[r].water.empty()) continue;
+        return Lacking{fmt::format("release[{}].pore_pressure_hydrograph", r),
+                       std::string(depth_averaged_key("release.pore_pressure_hydrograph")->why)};
+    }
     std::size_t barriers = 0;
     const auto barrier_section = [&] {
         const std::size_t number = barriers++;

@@ -52,8 +52,7 @@ constexpr ExportFile export_files[] = {
     {"results.kml", "application/vnd.google-earth.kml+xml",
      "Inundation, arrival times and structures hit, for Google Earth and phones", Needs::globe},
     {"stac_item.json", "application/geo+json", "Place, time, software and files, for catalogues of geodata"},
-    {scene_zip, "application/zip",
-     "The scene and its files with the changes of this scenario, but for releases, inflows and beds, for talus run",
+    {scene_zip, "application/zip", "The scene and its files with the changes of this scenario, for talus run",
      Needs::source},
     {"manifest.json", "application/json", "All parameters, versions, checksums and the result's hash"},
     {"peak_depth.tif", "image/tiff", "Peak flow depth, m"},
@@ -247,9 +246,12 @@ void Exports::scene_archive(const twin::Scenario& scenario, const Respond& respo
         const ExportFile& wanted = *find_file(scene_zip);
         const auto made = [&]() -> Result<Response> {
             // It is written into another folder: its files need whole paths.
-            TALUS_ASSIGN(const twin::SceneCopy scene, copy(fs::absolute(source.file), source.overrides));
-            // What is in a layer does not show in the text.
-            if (Bytes sent = archive_sent_.lock(); sent && scene.layers.empty() && scene.text == archived_)
+            const auto copied = copy(fs::absolute(source.file), source.overrides);
+            if (!copied) return error_response(409, copied.error().message);
+            const twin::SceneCopy& scene = *copied;
+            // What is in a layer or a table does not show in the text.
+            const bool text_is_all = scene.layers.empty() && scene.tables.empty();
+            if (Bytes sent = archive_sent_.lock(); sent && text_is_all && scene.text == archived_)
                 return answer_with(std::move(sent), wanted);
             std::error_code error;
             fs::create_directories(folder, error);
@@ -259,7 +261,7 @@ void Exports::scene_archive(const twin::Scenario& scenario, const Respond& respo
             Response response = read_file(folder / scene_zip, wanted, sent_);
             if (response.status == 200) {
                 archive_sent_ = response.body;
-                archived_ = scene.layers.empty() ? scene.text : "";
+                archived_ = text_is_all ? scene.text : "";
             }
             return response;
         }();

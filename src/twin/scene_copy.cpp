@@ -162,8 +162,17 @@ void put_releases(const Setup& setup, const scene::Scene& scene, params::SceneSp
         params::ReleaseSpec section = body.spec;
         section.name = body.name;
         const auto [was, in_scene] = given_of(release, given, scene.releases);
-        if (was != nullptr && (body.thickness_raster || body.patches == in_scene->patches)) {
+        const bool raster = body.thickness_raster.has_value();
+        if (was != nullptr) {  // its paths are whole
+            section.file = was->file;
+            section.layer = was->layer;
+            section.thickness_raster = was->thickness_raster;
+            section.pore_pressure_hydrograph = body.water.empty() ? "" : was->pore_pressure_hydrograph;
+        }
+        if (was != nullptr && raster == in_scene->thickness_raster.has_value() &&
+            (raster || body.patches == in_scene->patches)) {
             section.thickness = was->thickness;
+            section.thickness_attribute = was->thickness_attribute;
             section.volume = was->volume;
         } else {
             DrawnLayer layer{fmt::format("release {}", spec.releases.size() + 1), {{"thickness_m"}}, {}};
@@ -235,7 +244,11 @@ void put_beds(const Setup& setup, const scene::Scene& scene, params::SceneSpec& 
         params::BedSpec section = body.spec;
         const auto [was, in_scene] = given_of(bed, given, scene.bed_layers);
         const bool raster = body.depth_raster != nullptr;
-        if (!raster) section.depth_raster = "";
+        if (was != nullptr) {
+            section.file = was->file;
+            section.layer = was->layer;
+        }
+        section.depth_raster = raster && was != nullptr ? was->depth_raster : "";
         if (was != nullptr && body.parts == in_scene->parts && raster == (in_scene->depth_raster != nullptr)) {
             section.depth = body.parts.empty() ? body.spec.depth : was->depth;
             section.depth_attribute = was->depth_attribute;
@@ -251,6 +264,23 @@ void put_beds(const Setup& setup, const scene::Scene& scene, params::SceneSpec& 
         }
         spec.beds.push_back(std::move(section));
     }
+}
+
+/// Of releases and inflows that are there; `header` names the others.
+void keep_triggers(const Setup& setup, params::SceneSpec& spec, std::string& header) {
+    const auto lacks = [](const std::string& name, const auto& entries) {
+        return !name.empty() && std::none_of(entries.begin(), entries.end(), [&](const auto& entry) {
+            if constexpr (requires { entry.body->spec.start_time; }) {
+                if (std::isinf(entry.body->spec.start_time)) return false;
+            }
+            return entry.body->name == name;
+        });
+    };
+    std::erase_if(spec.triggers, [&](const params::TriggerSpec& trigger) {
+        if (!lacks(trigger.release, setup.releases) && !lacks(trigger.inflow, setup.inflows)) return false;
+        header += fmt::format("\nLeft out: trigger \"{}\", whose release or inflow is not in the scene.", trigger.name);
+        return true;
+    });
 }
 
 /// Of structures that are there; `header` names the others.
@@ -285,7 +315,12 @@ Result<SceneCopy> scene_copy(const std::filesystem::path& file, const std::vecto
     for (const TableKind kind : {TableKind::observation, TableKind::trigger, TableKind::alarm}) {
         put_entries(spec, kind, bodies_of(setup.tables(kind)));
     }
+    keep_triggers(setup, spec, header);
     keep_alarms(setup, spec, header);
+    if (spec.releases.empty() && spec.inflows.empty()) {
+        return Error{
+            "the scene has no debris: no release was triggered, and there is no inflow; trigger a release first"};
+    }
     copy.text = params::write_short_scene(spec, header);
     return Result<SceneCopy>(std::move(copy));
 }

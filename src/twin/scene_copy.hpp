@@ -32,10 +32,10 @@ struct SceneCopy {
     static constexpr const char* drawn_file = "drawn.gpkg";
 };
 
-/// A scene that loads as `file` with `overrides`, with what a setup has in place of its own, notes aside: a run of it
-/// ends in the state that a restart of the setup ends in. What has not been changed keeps its section and its file.
-/// Comments at the top name what it lacks: releases without a start time, and alarms of structures that are not there.
-/// Errors: as scene::parse_scene.
+/// A scene that loads as `file`, a whole path, with `overrides`, with what a setup has in place of its own, notes
+/// aside. A run of it ends in the state that a restart of the setup ends in, if drawn releases are triggered at their
+/// start times. Comments at the top name what it lacks: releases without a start time, triggers and alarms of what is
+/// not there. Errors: as scene::parse_scene; no debris.
 [[nodiscard]] Result<SceneCopy> scene_copy(const std::filesystem::path& file, const std::vector<std::string>& overrides,
                                            const Setup& setup, const scene::Scene& scene);
 

@@ -109,7 +109,11 @@ Status set_release(const TriggerValues& values, ReleaseSetup& setup, const Actio
                 fmt::format("volume_m3 = {:.6g}: must be at least one particle, {:.3g} m3", *values.volume, particle)};
         }
     }
-    if (values.pore_pressure_ratio) release.spec.pore_pressure_ratio = values.pore_pressure_ratio;
+    if (values.pore_pressure_ratio) {  // in place of water that rises
+        release.spec.pore_pressure_ratio = values.pore_pressure_ratio;
+        release.spec.pore_pressure_hydrograph.clear();
+        release.water.clear();
+    }
     setup.body = std::make_shared<const terrain::Release>(std::move(release));
     setup.as_in_scene = false;
     return {};

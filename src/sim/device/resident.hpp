@@ -103,8 +103,7 @@ class Resident : public Backend {
 
     /// Takes over what changes in every step.
     void follow_water(const StateSummary& state) {
-        if (state.water_of_release.empty()) return;
-        water_of_release_.upload(state.water_of_release);
+        if (!state.water_of_release.empty()) water_of_release_.upload(state.water_of_release);
         data_.state.water_of_release = {water_of_release_.data(), state.water_of_release.size()};
     }
 

@@ -289,7 +289,14 @@ class GridFlow : public Flow {
         for (int row = 1; row <= inner_; ++row) {
             for (int column = 0; column < geometry_.columns; ++column) {
                 const double depth = solver_->depth_at(column, row);
-                if (depth > 0) next.inject(column, row, depth, solver_->u_at(column, row), solver_->v_at(column, row));
+                if (!(depth > 0)) continue;
+                std::optional<double> solid_fraction, pore_pressure_ratio;
+                if (solver_->pore_pressure_evolves()) {
+                    solid_fraction = solver_->solid_fraction_at(column, row);
+                    pore_pressure_ratio = solver_->pore_pressure_ratio_at(column, row);
+                }
+                next.inject(column, row, depth, solver_->u_at(column, row), solver_->v_at(column, row), solid_fraction,
+                            pore_pressure_ratio);
             }
         }
         begun_ += solver_->time();

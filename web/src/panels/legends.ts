@@ -47,7 +47,7 @@ export function presentLegends(twin: Twin, stage: Stage, layers: ShownLayers): L
       return list;
     }
     const title = (name === "depth" && time !== null ? "Depth" : info.title) + (layers.isDifference ? `, ${twin.differenceName}` : "") +
-      (time === null ? "" : name === "depth" || name === "deposit_depth" ? ` at ${fixed(time, 1)} s` : ` until ${fixed(time, 1)} s`);
+      (time === null ? "" : ["depth", "deposit_depth", "pore_pressure_ratio"].includes(name) ? ` at ${fixed(time, 1)} s` : ` until ${fixed(time, 1)} s`);
     list.push(layers.isDifference ? { title, unit: info.unit, low, high, at: (s) => divergingAt(2 * s - 1) }
       : { title, unit: info.unit, low, high, at: (s) => rampAt(info.ramp, s), ...(time !== null && name.startsWith("peak_") ? { note: pastNote } : {}) });
   }

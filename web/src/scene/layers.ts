@@ -137,7 +137,8 @@ export function differenceOf(name: LayerName, a: Grid, b: Grid): Grid {
   const values = spread(b).map((v, k) => {
     const w = va[k];
     if (Number.isNaN(v) && Number.isNaN(w)) return NaN;
-    if (name === "arrival_time") return v - w;
+    // There is none of these where there is no debris.
+    if (name === "arrival_time" || name === "pore_pressure_ratio") return v - w;
     return (Number.isNaN(v) ? 0 : v) - (Number.isNaN(w) ? 0 : w);
   });
   return { west, south, cell, columns, rows, values };
