@@ -1,7 +1,7 @@
 #pragma once
 
-#include <bit>
 #include <cstdint>
+#include <cstring>
 
 namespace talus {
 
@@ -9,7 +9,11 @@ namespace talus {
 [[nodiscard]] inline float cube_root(float number) {
     const double x = number;
     // A third of the exponent is within 6 %; each of Newton's steps squares that.
-    double root = std::bit_cast<double>(std::bit_cast<std::uint64_t>(x) / 3 + 0x2a9f'7893'782d'a1ceULL);
+    std::uint64_t bits = 0;
+    std::memcpy(&bits, &x, sizeof bits);
+    bits = bits / 3 + 0x2a9f'7893'782d'a1ceULL;
+    double root = 0;
+    std::memcpy(&root, &bits, sizeof root);
     for (int k = 0; k < 4; ++k) root -= (root * root * root - x) / (3 * root * root);
     return static_cast<float>(root);
 }
