@@ -31,20 +31,16 @@ extern const char talus_engine_wasm_end[];
 #endif
 
 namespace talus::publish {
-namespace {
-
-std::string read(const std::filesystem::path& file) {
-    std::ifstream stream(file, std::ios::binary);
-    return {std::istreambuf_iterator<char>(stream), {}};
-}
-
-}  // namespace
 
 std::optional<Engine> find_engine() {
 #ifdef TALUS_ENGINE
     return Engine{{talus_engine_script_begin, talus_engine_script_end},
                   {talus_engine_wasm_begin, talus_engine_wasm_end}};
 #else
+    const auto read = [](const std::filesystem::path& file) {
+        std::ifstream stream(file, std::ios::binary);
+        return std::string(std::istreambuf_iterator<char>(stream), {});
+    };
     std::error_code error;
     const std::filesystem::path program = std::filesystem::read_symlink("/proc/self/exe", error);
     if (error) return {};

@@ -57,7 +57,7 @@ TALUS_DEVICE double effective_share(const AnyModel& model, const Entries& entry_
         ratio = release.pore_pressure_ratio.value_or(ratio);
         since = std::max(0.0, time - release.start_time);
     }
-    if (model.pore_pressure_decay_time > 0) ratio *= std::exp(-since / model.pore_pressure_decay_time);
+    if (model.pore_pressure_decay_time > 0) ratio *= exponential(-since / model.pore_pressure_decay_time);
     return 1 - ratio;
 }
 
@@ -90,7 +90,7 @@ TALUS_DEVICE double share_of_grains(const AnyModel& model, const AnyState& state
         if (!(water.ratio >= 0)) return effective_share(model, state.entry_of_id, id, time);
         const double since = water.failed != 0 ? larger(0.0, time - water.failed_at) : 0, ratio = water.ratio;
         const double decay = model.pore_pressure_decay_time;
-        return 1 - (decay > 0 ? ratio * std::exp(-since / decay) : ratio);
+        return 1 - (decay > 0 ? ratio * exponential(-since / decay) : ratio);
     }
     return friction_share(soil_of(model, state.soil_of_id, state.entry_of_id, id), model.internal_friction_coefficient);
 }
