@@ -50,7 +50,8 @@ mount --bind /dev/pts "$root/dev/pts" # zsh completes in a terminal
 # minbase leaves out the manual pages and documentation of packages only where it is told to; here they are looked at.
 rm -f "$root"/etc/dpkg/dpkg.cfg.d/*doc*
 inside() {
-    chroot "$root" env DEBIAN_FRONTEND=noninteractive LC_ALL=C.UTF-8 HOME=/root TERM=xterm "$@"
+    # Nothing of this machine's environment: a compiler launcher of the caller is not in there.
+    chroot "$root" env --ignore-environment PATH=/usr/local/sbin:/usr/local/bin:/usr/sbin:/usr/bin:/sbin:/bin DEBIAN_FRONTEND=noninteractive LC_ALL=C.UTF-8 HOME=/root TERM=xterm "$@"
 }
 install_inside() {
     inside apt-get install --yes --no-install-recommends "$@"
