@@ -295,7 +295,9 @@ class Plugin(unittest.TestCase):
 
     def test_makes_a_scene_in_local_coordinates_where_that_is_said(self):
         bare = FOLDER / "bare.tif"
-        gdal.Translate(str(bare), str(FOLDER / "dem.tif"), outputSRS="")
+        memory = gdal.Translate("", str(FOLDER / "dem.tif"), format="MEM")
+        memory.SetProjection("")
+        gdal.GetDriverByName("GTiff").CreateCopy(str(bare), memory)
         write_boxes("bare.gpkg", "scar", [(5, 10, 15, 20)], place=False)
         flume = dict(layers(), TERRAIN=str(bare), RELEASE=str(FOLDER / "bare.gpkg"), BUILDINGS=None)
         with self.assertRaisesRegex(QgsProcessingException, "states no coordinate reference system"):
