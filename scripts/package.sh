@@ -171,6 +171,9 @@ print("Python:", talus.__version__, simulation.hash)'
 mkdir -p "$root/python/tests" "$root/python/examples"
 cp -r tests/python "$root/python/tests/"
 inside ln -s /usr/share/doc/talus/examples/notebooks /python/examples/notebooks
+mkdir -p "$root/python/scenes"
+cp -r examples/risk "$root/python/examples/"
+cp -r scenes/sham_tseng "$root/python/scenes/"
 check "the tests of the Python package" python3 -m unittest discover --start-directory /python/tests/python
 
 inside apt-get remove --yes talus talus-doc "$library"
