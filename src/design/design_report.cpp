@@ -1,6 +1,9 @@
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <numbers>
+#include <optional>
+#include <string>
 #include <utility>
 
 #include <fmt/format.h>
@@ -98,6 +101,16 @@ Json line_json(const DesignResult& result, const LineResult& line) {
 
 std::string allowed_text(const DesignRequest& request) {
     return fmt::format("at most {:g} % of the {}", 100 * request.share, request.of_volume ? "volume" : "runs");
+}
+
+/// What the runs with particles say of the height; nothing where there are none.
+std::string confirmation_text(const LineResult& line) {
+    const auto passes = [](const std::optional<BarrierRun>& run) { return run && run->passes(); };
+    const auto passing = std::count_if(line.confirmed.begin(), line.confirmed.end(), passes);
+    if (line.confirmed.empty()) return "";
+    if (passing == 0) return fmt::format(" The {} deciding runs with particles confirm it.", line.confirmed.size());
+    return fmt::format(" Not confirmed: with particles {} of the {} deciding runs pass.", passing,
+                       line.confirmed.size());
 }
 
 Json key_figures_of(const DesignResult& result) {
@@ -220,6 +233,7 @@ Result<std::string> design_sheet(const DesignResult& result, const Json& results
                                               result.design->heights.front(), result.design->heights.back())
                                 : fmt::format("No height up to {:g} m is enough: all numbers are those of {:g} m.",
                                               result.design->heights.back(), line.shown().height);
+    page["answer"] = page["answer"].get<std::string>() + confirmation_text(line);
     page["section"] = section_svg(result);
     page["capacity"] = capacity_chart(result);
     page["times"] = time_chart(result);
