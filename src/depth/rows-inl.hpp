@@ -112,7 +112,7 @@ HWY_INLINE Resistance<L> resistance_at(const StageData& data, std::ptrdiff_t i, 
     r.inverse_turbulence = known(data.cover.inverse_turbulence, data.inverse_turbulence);
     if (data.turbulent_thickness > 0) {
         const L thickness = larger(depth, L(dry_depth)) / stretch;
-        r.inverse_turbulence = r.inverse_turbulence * sim::cube_root(L(data.turbulent_thickness) / thickness);
+        r.inverse_turbulence = r.inverse_turbulence * sim::rough_cube_root(L(data.turbulent_thickness) / thickness);
     }
     if (data.samosat.on) {
         const L thickness = larger(depth, L(dry_depth)) / stretch;

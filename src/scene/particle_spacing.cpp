@@ -6,13 +6,15 @@
 
 #include <fmt/format.h>
 
+#include "core/cube_root.hpp"
+
 namespace talus::scene {
 
 double particle_spacing(const Scene& scene) {
     const params::SolverSpec& solver = scene.spec.solver;
     if (solver.particle_spacing) return *solver.particle_spacing;
     if (solver.target_layers) return spacing_of_layers(scene.thinnest.value().thickness, *solver.target_layers);
-    return std::cbrt(total_volume(scene) /
+    return cube_root(total_volume(scene) /
                      solver.target_particle_count.value_or(params::SolverSpec::usual_particle_count));
 }
 
@@ -41,7 +43,7 @@ double spacing_of_layers(double thickness, double layers) {
 }
 
 double most_layers(const Scene& scene, double thickness) {
-    return thickness * std::cbrt(scene.spec.solver.particle_limit / total_volume(scene));
+    return thickness * cube_root(scene.spec.solver.particle_limit / total_volume(scene));
 }
 
 Status settle_layers(const ParsedScene& parsed, Scene& scene) {

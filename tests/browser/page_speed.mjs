@@ -33,12 +33,12 @@ try {
   await page.selectOption("select[aria-label^=Speed]", "0.5");  // leaves the page a core
   await page.click(".run");
   await until(() => page.evaluate(() => window.talusStats.shownTime_s), (t) => t > 1, "debris on its way");
-  await pictures(page, 200);  // the browser compiles what is called often
-  const seen = await pictures(page, 300);
+  await pictures(page, 60);  // the browser compiles what is called often
+  const seen = await pictures(page, 150);
   // Everything that is allocated meanwhile, also what does not last; buffers of messages lie outside this heap.
   const inspector = await page.context().newCDPSession(page);
   await inspector.send("HeapProfiler.startSampling", { samplingInterval: 2048, includeObjectsCollectedByMajorGC: true, includeObjectsCollectedByMinorGC: true });
-  const sampled = (await pictures(page, 300)).length;
+  const sampled = (await pictures(page, 100)).length;
   if (sampled === 0) throw new Error("no picture was drawn meanwhile: the run is over, or the machine is too slow");
   const { profile } = await inspector.send("HeapProfiler.stopSampling");
   const drawing = new Map();

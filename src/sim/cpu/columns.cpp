@@ -50,11 +50,10 @@ std::array<float, 2> range_of(const std::vector<float>& values, std::span<const 
 
 }  // namespace
 
-template <class F>
-void Columns::for_each_column(float x, float y, const F& f) const {
-    sim::for_each_column(x, y, inverse_width_, [&](std::int64_t column, std::int64_t row, float share) {
-        f(Place{column, row}, share);
-    });
+inline std::size_t Columns::in_box(Place place) const {
+    const std::int64_t column = place.column - first_.column, row = place.row - first_.row;
+    const bool inside = column >= 0 && row >= 0 && column < size_.column && row < size_.row;
+    return inside ? static_cast<std::size_t>(row * size_.column + column) : nowhere;
 }
 
 /// Chooses between box and hash, and empties the columns.
@@ -83,29 +82,27 @@ void Columns::count(const VectorArray& points, std::span<const std::uint8_t> asl
     if (size_.column == 0) return;
     simd::parallel_ranges(asleep.size(), grain, [&](std::size_t first, std::size_t last) {
         for (std::size_t i = first; i < last; ++i) {
-            for_each_column(points.x[i], points.y[i], [&](Place place, float share) {
-                if (asleep[i] != 0 && in_box(place) == nowhere) return;
-                const std::uint32_t units = column_units(share);
-                if (units != 0) sums_[find_or_keep(place)].fetch_add(units, std::memory_order_relaxed);
-            });
+            for_each_column(points.x[i], points.y[i], inverse_width_,
+                            [&](std::int64_t column, std::int64_t row, float share) {
+                                std::size_t at = in_box({column, row});
+                                if (asleep[i] != 0 && at == nowhere) return;
+                                const std::uint32_t units = column_units(share);
+                                if (units == 0) return;
+                                if (hashed_) at = find_or_keep({column, row});
+                                sums_[at].fetch_add(units, std::memory_order_relaxed);
+                            });
         }
     });
 }
 
 float Columns::particles_at(float x, float y) const {
     float sum = 0;
-    for_each_column(x, y, [&](Place place, float share) {
-        const std::size_t at = find(place);
+    for_each_column(x, y, inverse_width_, [&](std::int64_t column, std::int64_t row, float share) {
+        const std::size_t at = hashed_ ? find({column, row}) : in_box({column, row});
         const std::uint32_t units = at == nowhere ? 0 : sums_[at].load(std::memory_order_relaxed);
         sum += share * static_cast<float>(units) * (1 / units_per_particle);
     });
     return sum;
-}
-
-std::size_t Columns::in_box(Place place) const {
-    const std::int64_t column = place.column - first_.column, row = place.row - first_.row;
-    const bool inside = column >= 0 && row >= 0 && column < size_.column && row < size_.row;
-    return inside ? static_cast<std::size_t>(row * size_.column + column) : nowhere;
 }
 
 /// Fibonacci hashing (Knuth, "The Art of Computer Programming", vol. 3, 6.4): neighbouring keys end up far apart.
@@ -114,7 +111,6 @@ std::size_t Columns::first_slot(std::uint64_t key) const {
 }
 
 std::size_t Columns::find_or_keep(Place place) {
-    if (!hashed_) return in_box(place);
     const std::uint64_t key = key_of(place.column, place.row);
     for (std::size_t k = first_slot(key);; k = (k + 1) & (keys_.size() - 1)) {
         std::uint64_t there = keys_[k].load(std::memory_order_relaxed);
@@ -124,7 +120,6 @@ std::size_t Columns::find_or_keep(Place place) {
 }
 
 std::size_t Columns::find(Place place) const {
-    if (!hashed_) return in_box(place);
     const std::uint64_t key = key_of(place.column, place.row);
     for (std::size_t k = first_slot(key);; k = (k + 1) & (keys_.size() - 1)) {
         const std::uint64_t there = keys_[k].load(std::memory_order_relaxed);

@@ -32,14 +32,13 @@ class Columns {
         std::int64_t column, row;
     };
 
-    template <class F>
-    void for_each_column(float x, float y, const F& f) const;
     void frame(const VectorArray& points, std::span<const std::uint8_t> asleep);
-    /// Where the sum of a column is kept, or `nowhere`.
+    /// If the columns are hashed, where the sum of a column is kept, or `nowhere`.
     [[nodiscard]] std::size_t find(Place place) const;
-    /// The same; if the columns are hashed, it is kept from now on.
+    /// The same; it is kept from now on.
     [[nodiscard]] std::size_t find_or_keep(Place place);
-    [[nodiscard]] std::size_t in_box(Place place) const;
+    /// Where the sum of a column of the box is kept, or `nowhere`.
+    [[nodiscard]] inline std::size_t in_box(Place place) const;
     [[nodiscard]] std::size_t first_slot(std::uint64_t key) const;
 
     std::size_t capacity_;

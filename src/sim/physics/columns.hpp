@@ -23,7 +23,7 @@ inline constexpr float units_per_particle = 65536;
 /// Calls f(column, row, share) for the four columns whose centres surround a place, each with its share by bilinear
 /// interpolation. Columns are counted from the frame's origin; `inverse_width` of a column in 1/m.
 template <class F>
-TALUS_DEVICE void for_each_column(float x, float y, double inverse_width, const F& f) {
+TALUS_INLINE void for_each_column(float x, float y, double inverse_width, const F& f) {
     const double u = x * inverse_width - 0.5, v = y * inverse_width - 0.5;
     const std::int64_t column = floor_to_int(u), row = floor_to_int(v);
     const auto right = static_cast<float>(u - static_cast<double>(column)),

@@ -117,15 +117,19 @@ TALUS_DEVICE Soil<Real> evolve(const EvolvingPressure& law, const Soil<Real>& be
     const Real by_shear = Real(1.5) * m * rate / a;
     const Real viscous = Real(law.viscosity) * rate;
     const Real inertial = Real(law.grain_density * grain_of_inertia * grain_of_inertia) * rate * rate;
+    const Real of_viscous = sqrt(viscous);
     const auto dilatancy_at = [&](const Real& s) {
-        return m - Real(law.critical_solid_fraction) / (one + sqrt(viscous / (inertial + larger(one, s - base))));
+        const Real of_stress = sqrt(inertial + larger(one, s - base));
+        return m - Real(law.critical_solid_fraction) * of_stress / (of_stress + of_viscous);
     };
-    const Real to_hydrostatic = fall * (submerged + base);
+    const Real to_hydrostatic = fall * (submerged + base), falls = fall * s0 * dt;
     const auto after = [&](const Real& s) {
         const Real x = (to_hydrostatic + by_shear * dilatancy_at(s)) * dt, e = exponential(Real(0) - x);
-        const Real small = one - x * (Real(0.5) - x * (Real(1.0 / 6) - x * Real(1.0 / 24)));
-        const Real mean = select(x * x < Real(0.01), small, (one - e) / select(x * x < Real(0.01), one, x));
-        return larger(base, smaller(load + base, s0 / (e + fall * s0 * dt * mean)));
+        // (1 - e) / x: from its series where x is small, otherwise with numerator and denominator times x.
+        const auto is_small = x * x < Real(0.01);
+        const Real mean = select(is_small, one - x * (Real(0.5) - x * (Real(1.0 / 6) - x * Real(1.0 / 24))), one - e);
+        const Real times = select(is_small, one, x);
+        return larger(base, smaller(load + base, s0 * times / (e * times + falls * mean)));
     };
     // The root of after(s) = s: regula falsi with the weights of Illinois.
     Real low = s0, high = after(low), at_low = high - low, at_high = after(high) - high;

@@ -61,11 +61,9 @@ TALUS_DEVICE double effective_share(const AnyModel& model, const Entries& entry_
     return 1 - ratio;
 }
 
-/// The state of a particle's soil: that of its debris before a step has computed it. `thickness` is 0 until then.
-template <class AnyModel, class Soils, class Entries>
-TALUS_DEVICE Soil<float> soil_of(const AnyModel& model, const Soils& soil_of_id, const Entries& entry_of_id,
-                                 std::size_t id) {
-    if (id < soil_of_id.size() && soil_of_id[id].thickness > 0) return soil_of_id[id];
+/// The state of a particle's soil as its debris starts.
+template <class AnyModel, class Entries>
+TALUS_DEVICE Soil<float> first_soil_of(const AnyModel& model, const Entries& entry_of_id, std::size_t id) {
     const EvolvingPressure& law = model.evolving_pressure;
     double fraction = law.solid_fraction, ratio = model.pore_pressure_ratio > 0 ? model.pore_pressure_ratio : -1;
     if (id < entry_of_id.size()) {
@@ -78,6 +76,14 @@ TALUS_DEVICE Soil<float> soil_of(const AnyModel& model, const Soils& soil_of_id,
         ratio = release.pore_pressure_ratio.value_or(ratio);
     }
     return starting_soil(law, fraction, ratio);
+}
+
+/// The state of a particle's soil: that of its debris before a step has computed it. `thickness` is 0 until then.
+template <class AnyModel, class Soils, class Entries>
+TALUS_DEVICE Soil<float> soil_of(const AnyModel& model, const Soils& soil_of_id, const Entries& entry_of_id,
+                                 std::size_t id) {
+    if (id < soil_of_id.size() && soil_of_id[id].thickness > 0) return soil_of_id[id];
+    return first_soil_of(model, entry_of_id, id);
 }
 
 /// What multiplies friction of dry debris: the share of the normal stress that the grains bear, or with evolving pore
@@ -242,7 +248,7 @@ TALUS_DEVICE Real flow_thickness(const AnyModel& model, const terrain::GroundSam
 /// Cube root of a positive number, to 1e-4 between exp(-6) and exp(6). Square roots alone, which every instruction set
 /// rounds in the same way: 1/3 = 1/4 + 1/16 + 1/64 + ..., and the rest is near 1.
 template <class Real>
-TALUS_DEVICE Real cube_root(Real x) {
+TALUS_DEVICE Real rough_cube_root(Real x) {
     using std::sqrt;
     const Real a = sqrt(sqrt(x)), b = sqrt(sqrt(a)), c = sqrt(sqrt(b)), rest = c - Real(1);
     return a * b * c * (Real(1) + rest * (Real(1.0 / 3) - rest * Real(1.0 / 9)));
@@ -253,7 +259,7 @@ TALUS_DEVICE Real cube_root(Real x) {
 template <class Real, class AnyModel>
 TALUS_DEVICE Real turbulence_at(const AnyModel& model, Real thickness) {
     if (!(model.turbulent_thickness > 0)) return 1;
-    return cube_root(Real(model.turbulent_thickness) / thickness);
+    return rough_cube_root(Real(model.turbulent_thickness) / thickness);
 }
 
 /// What a step of dv/dt = -(a v + b v^2) takes from a speed v, over what it leaves. `linear` = a dt, `square` = b v dt.
