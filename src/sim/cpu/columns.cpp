@@ -24,27 +24,31 @@ std::uint64_t key_of(std::int64_t column, std::int64_t row) {
 
 template <class Array>
 void clear(Array& array, std::size_t count) {
-    simd::parallel_ranges(count, 16384, [&](std::size_t first, std::size_t last) {
+    simd::parallel_ranges(count, 131072, [&](std::size_t first, std::size_t last) {
         for (std::size_t k = first; k < last; ++k) array[k].store(0, std::memory_order_relaxed);
     });
 }
 
-/// The range of finite values that are not asleep; from high to low where all are.
-std::array<float, 2> range_of(const std::vector<float>& values, std::span<const std::uint8_t> asleep) {
-    using Range = std::array<float, 2>;
-    constexpr float highest = std::numeric_limits<float>::max();
+/// Around finite points that are not asleep; from high to low where all are.
+struct Box {
+    float x_min = std::numeric_limits<float>::max(), x_max = -x_min, y_min = x_min, y_max = -x_min;
+};
+
+Box box_of(const VectorArray& points, std::span<const std::uint8_t> asleep) {
+    // Few points are not worth waking another thread.
     return simd::reduce_ranges(
-        asleep.size(), 4096, Range{highest, -highest},
-        [&](std::size_t first, std::size_t last, Range range) {
+        asleep.size(), 16384, Box{},
+        [&](std::size_t first, std::size_t last, Box box) {
             for (std::size_t i = first; i < last; ++i) {
                 if (asleep[i] != 0) continue;
-                range[0] = std::min(range[0], values[i]);
-                range[1] = std::max(range[1], values[i]);
+                const float x = points.x[i], y = points.y[i];
+                box = {std::min(box.x_min, x), std::max(box.x_max, x), std::min(box.y_min, y), std::max(box.y_max, y)};
             }
-            return range;
+            return box;
         },
-        [](const Range& a, const Range& b) {
-            return Range{std::min(a[0], b[0]), std::max(a[1], b[1])};
+        [](const Box& a, const Box& b) {
+            return Box{std::min(a.x_min, b.x_min), std::max(a.x_max, b.x_max), std::min(a.y_min, b.y_min),
+                       std::max(a.y_max, b.y_max)};
         });
 }
 
@@ -58,14 +62,14 @@ inline std::size_t Columns::in_box(Place place) const {
 
 /// Chooses between box and hash, and empties the columns.
 void Columns::frame(const VectorArray& points, std::span<const std::uint8_t> asleep) {
-    const auto along = [&](const std::vector<float>& values, std::int64_t& first, std::int64_t& size) {
-        const auto [low, high] = range_of(values, asleep);
+    const auto along = [&](float low, float high, std::int64_t& first, std::int64_t& size) {
         if (low > high) return;
         first = floor_to_int(low * inverse_width_ - 0.5);
         size = floor_to_int(high * inverse_width_ - 0.5) + 2 - first;
     };
-    along(points.x, first_.column, size_.column);
-    along(points.y, first_.row, size_.row);
+    const Box box = box_of(points, asleep);
+    along(box.x_min, box.x_max, first_.column, size_.column);
+    along(box.y_min, box.y_max, first_.row, size_.row);
     hashed_ = static_cast<double>(size_.column) * static_cast<double>(size_.row) >
               static_cast<double>(columns_per_particle * capacity_);
     if (hashed_ && keys_.empty()) keys_ = std::vector<std::atomic<std::uint64_t>>(std::bit_ceil(5 * capacity_ + 1));
