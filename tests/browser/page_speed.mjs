@@ -2,7 +2,8 @@
 // Usage: node page_speed.mjs TALUS serve --json --port 0 SCENE. TALUS_LOOK=scientific: in that look, otherwise in the natural one;
 // TALUS_SITE=FOLDER: with another build of the page, such as `npx vite build --minify false --outDir FOLDER`, whose functions have names.
 // Without a graphics card the pixels are drawn by the processor, in another process; the figures here are the page's own script and what
-// it hands to WebGL, which do not depend on the number of pixels, so that there are few of them.
+// it hands to WebGL, which do not depend on the number of pixels, so that there are few of them. TALUS_DRAW=0: nothing is drawn, so that
+// the script has the processor to itself as beside a card; all but the draw calls themselves is done.
 import { tmpdir } from "node:os";
 import { join } from "node:path";
 import { chromium } from "playwright-core";
@@ -10,6 +11,18 @@ import { Run, startServer, until } from "./twin/harness.mjs";
 
 const browser = await chromium.launch({ executablePath: process.env.TALUS_BROWSER ?? "/usr/bin/chromium", args: ["--headless", "--no-sandbox",
   "--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--ignore-gpu-blocklist", "--no-first-run", "--disable-features=LocalNetworkAccessChecks"] });
+if (process.env.TALUS_DRAW === "0") {
+  const newContext = browser.newContext.bind(browser);
+  browser.newContext = async (options) => {
+    const context = await newContext(options);
+    await context.addInitScript(() => {
+      for (const name of ["drawArrays", "drawElements", "drawArraysInstanced", "drawElementsInstanced", "drawRangeElements"]) {
+        WebGL2RenderingContext.prototype[name] = () => {};
+      }
+    });
+    return context;
+  };
+}
 const server = await startServer(process.argv.slice(2));
 /** Figures of so many pictures, one after the other. */
 const pictures = (page, count) => page.evaluate((wanted) => new Promise((resolve) => {
@@ -34,7 +47,9 @@ try {
   await page.click(".run");
   await until(() => page.evaluate(() => window.talusStats.shownTime_s), (t) => t > 1, "debris on its way");
   await pictures(page, 60);  // the browser compiles what is called often
+  const from = performance.now();
   const seen = await pictures(page, 150);
+  const rate = seen.length / (performance.now() - from) * 1e3;
   // Everything that is allocated meanwhile, also what does not last; buffers of messages lie outside this heap.
   const inspector = await page.context().newCDPSession(page);
   await inspector.send("HeapProfiler.startSampling", { samplingInterval: 2048, includeObjectsCollectedByMajorGC: true, includeObjectsCollectedByMinorGC: true });
@@ -61,6 +76,7 @@ try {
     console.log(`${what}  median ${at(0.5)} ms, 95th percentile ${at(0.95)} ms`);
   };
   console.log(`particles        ${seen.at(-1).particles}, detail ${seen.at(-1).detail}, ${seen.length} pictures`);
+  console.log(`pictures         ${rate.toFixed(0)} a second`);
   console.log(`draw calls       ${Math.max(...of("drawCalls"))} at most`);
   const bytes = [...drawing].sort((a, b) => b[1] - a[1]);
   const perPicture = (size) => `${(size / sampled / 1e3).toFixed(2)} kB`;
