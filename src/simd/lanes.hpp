@@ -147,9 +147,13 @@ struct LaneMask {
     TALUS_INLINE friend LaneMask operator!(const LaneMask& a) { return {~a.bits}; }
     [[nodiscard]] bool at(int lane) const { return bits[lane] != 0; }
     TALUS_INLINE friend bool any(const LaneMask& a) {
+#ifdef __wasm_simd128__  // where Clang keeps a loop over the lanes, in memory
+        return __builtin_wasm_any_true_v128(a.bits);
+#else
         std::int32_t all = 0;
         for (int lane = 0; lane < count; ++lane) all |= a.bits[lane];
         return all != 0;
+#endif
     }
 };
 
@@ -221,9 +225,13 @@ struct Lanes {
         return Lanes(Floats(mask.bits ? yes.v : no.v));
     }
     TALUS_INLINE friend Lanes sqrt(const Lanes& a) {
+#ifdef __wasm_simd128__
+        return Lanes(Floats(__builtin_wasm_sqrt_f32x4(a.v)));
+#else
         Lanes result;
         for (int lane = 0; lane < count; ++lane) result.v[lane] = __builtin_sqrtf(a.v[lane]);
         return result;
+#endif
     }
     TALUS_INLINE friend Lanes opaque(const Lanes& a) {
         Floats v = a.v;
