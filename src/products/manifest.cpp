@@ -292,47 +292,6 @@ const char* origin_text(scene::PathOrigin origin) {
     return "followed";
 }
 
-const char* status_text(run::RunStatus status) {
-    switch (status) {
-        case run::RunStatus::complete:
-            return "complete";
-        case run::RunStatus::interrupted:
-            return "interrupted";
-        case run::RunStatus::fault:
-            return "fault";
-    }
-    return "";
-}
-
-std::string scene_hash(const scene::Scene& scene) {
-    for (const scene::InputFile& input : scene.inputs) {
-        if (input.role == "scene") return input.hash;
-    }
-    return "";
-}
-
-namespace {
-
-std::string caveat_of(bool reconstruction, const run::RunResult& result) {
-    std::string text = reconstruction ? "reconstruction" : "";
-    if (result.status != run::RunStatus::complete) {
-        text += (text.empty() ? "" : ", ") + std::string("partial result: ") + status_text(result.status);
-    }
-    return text.empty() ? "" : " (" + text + ")";
-}
-
-}  // namespace
-
-std::string caveat(const scene::Scene& scene, const run::RunResult& result) {
-    return caveat_of(scene.spec.scene.reconstruction, result);
-}
-
-std::string title_of(const scene::Scene& scene, const run::RunResult& result) {
-    const params::SceneInfo& info = scene.spec.scene;
-    const bool said = info.title.find("econstruction") != std::string::npos;
-    return info.title + caveat_of(info.reconstruction && !said, result);
-}
-
 Status write_manifest(const scene::Scene& scene, const run::RunResult& result,
                       const std::vector<run::Comparison>& comparisons, const std::filesystem::path& folder,
                       const std::vector<Phase>& written) {

@@ -1,13 +1,8 @@
-#include <algorithm>
-#include <cctype>
 #include <memory>
 #include <string>
 #include <utility>
 #include <vector>
 
-#include <fmt/format.h>
-
-#include "core/hash.hpp"
 #include "core/try.hpp"
 #include "geo/raster.hpp"
 #include "products/text_file.hpp"
@@ -45,26 +40,6 @@ std::shared_ptr<const Grid<float>> made(Grid<float> grid) {
 }
 
 }  // namespace
-
-std::vector<std::pair<std::string, std::string>> origin_of(const scene::Scene& scene, const run::RunResult& result) {
-    return {{"TIFFTAG_SOFTWARE", std::string("talus ") + TALUS_VERSION},
-            {"TITLE", scene.spec.scene.title},
-            {"SCENE_HASH", scene_hash(scene)},
-            {"RESULT_HASH", to_hex(result.hash)},
-            {"SIMULATED_TIME_S", fmt::format("{}", result.simulated_time)},
-            {"STATUS", status_text(result.status)}};
-}
-
-std::vector<std::pair<std::string, std::string>> plain_origin_of(const scene::Scene& scene,
-                                                                 const run::RunResult& result) {
-    auto all = origin_of(scene, result);
-    for (auto& [key, value] : all) {
-        if (key == "TIFFTAG_SOFTWARE") key = "source";
-        std::transform(key.begin(), key.end(), key.begin(),
-                       [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-    }
-    return all;
-}
 
 void add_maps(const scene::Scene& scene, const run::RunResult& result, const std::filesystem::path& folder,
               LayerDefinition& layers, std::vector<WriteJob>& jobs) {

@@ -4,6 +4,7 @@
 #include "core/angle.hpp"
 #include "core/try.hpp"
 #include "products/csv.hpp"
+#include "products/page_files.hpp"
 #include "products/text_file.hpp"
 #include "products/writers.hpp"
 #include "report/intensity.hpp"
@@ -20,7 +21,8 @@ std::string front_table(const observe::Observation& observation, std::string_vie
     return csv.text();
 }
 
-std::string run_out_table(const observe::RunOut& r, std::string_view changed) {
+std::string run_out_table(const observe::Observation& observation, std::string_view changed) {
+    const observe::RunOut& r = observation.run_out;
     Csv csv(
         "run_out_along_flow_m,run_out_straight_m,at_least,toe_x_m,toe_y_m,drop_m,runout_angle_deg,travel_angle_deg,"
         "front_chainage_m",
@@ -105,7 +107,8 @@ std::string time_table(const observe::Observation& observation, std::string_view
     return csv.text();
 }
 
-std::string erosion_table(const observe::Erosion& erosion, std::string_view changed) {
+std::string erosion_table(const observe::Observation& observation, std::string_view changed) {
+    const observe::Erosion& erosion = observation.erosion;
     Csv csv("chainage_m,volume_entrained_upstream_m3", changed);
     for (std::size_t k = 0; k < erosion.chainage.size(); ++k) csv.row({erosion.chainage[k], erosion.upstream[k]});
     return csv.text();
@@ -135,23 +138,36 @@ std::string discharge_table(const observe::Observation& observation, std::string
 
 }  // namespace
 
+std::vector<PageFile> tables_of(const run::RunResult& result, const std::string& changed) {
+    using run::RunResult;
+    using scene::Scene;
+    std::vector<PageFile> tables;
+    const auto add = [&](const FileName& file, auto text) {
+        tables.push_back({file.name, "text/csv", file.what, [changed, text](const Scene& scene, const RunResult& run) {
+                              return text(scene, run.observation, changed);
+                          }});
+    };
+    const auto of_observation = [](auto table) {
+        return [table](const Scene&, const observe::Observation& o, std::string_view also) { return table(o, also); };
+    };
+    const observe::Observation& observation = result.observation;
+    add(front_csv, of_observation(front_table));
+    add(run_out_csv, of_observation(run_out_table));
+    add(buildings_csv, building_table);
+    if (!observation.erosion.chainage.empty()) add(erosion_csv, of_observation(erosion_table));
+    if (!observation.gauges.empty()) add(gauges_csv, of_observation(gauge_table));
+    if (!observation.cross_sections.empty()) add(discharge_csv, of_observation(discharge_table));
+    add(structures_csv, of_observation(structure_table));
+    add(timeseries_csv, of_observation(time_table));
+    return tables;
+}
+
 Status write_tables(const scene::Scene& scene, const run::RunResult& result, const std::filesystem::path& folder,
                     std::string_view changed) {
-    const observe::Observation& observation = result.observation;
-    TALUS_TRY(write_text_file(folder / "front.csv", front_table(observation, changed)));
-    TALUS_TRY(write_text_file(folder / "run_out.csv", run_out_table(observation.run_out, changed)));
-    TALUS_TRY(write_text_file(folder / "buildings.csv", building_table(scene, observation, changed)));
-    if (!observation.erosion.chainage.empty()) {
-        TALUS_TRY(write_text_file(folder / "erosion.csv", erosion_table(observation.erosion, changed)));
+    for (const PageFile& table : tables_of(result, std::string(changed))) {
+        TALUS_TRY(write_text_file(folder / table.name, table.bytes(scene, result)));
     }
-    if (!observation.gauges.empty()) {
-        TALUS_TRY(write_text_file(folder / "gauges.csv", gauge_table(observation, changed)));
-    }
-    if (!observation.cross_sections.empty()) {
-        TALUS_TRY(write_text_file(folder / "discharge.csv", discharge_table(observation, changed)));
-    }
-    TALUS_TRY(write_text_file(folder / "structures_over_time.csv", structure_table(observation, changed)));
-    return write_text_file(folder / "timeseries.csv", time_table(observation, changed));
+    return {};
 }
 
 }  // namespace talus::products

@@ -10,6 +10,7 @@
 #include "core/try.hpp"
 #include "geo/longitude_latitude.hpp"
 #include "geo/vector.hpp"
+#include "products/page_files.hpp"
 #include "products/text_file.hpp"
 #include "scene/bundle.hpp"
 #include "serve/api.hpp"
@@ -40,14 +41,14 @@ constexpr const char* twin_what =
 constexpr ExportFile export_files[] = {
     {"report.html", "text/html", "Report with maps, plots and tables, for the browser and for paper"},
     {"results.json", "application/json", "What the report shows, as data: key figures, tables, curves"},
-    {"front.csv", "text/csv", "Front: chainage, first arrival, velocity"},
-    {"run_out.csv", "text/csv", "Run-out, drop, run-out angle and travel angle"},
-    {"buildings.csv", "text/csv", "Impact per building"},
-    {"structures_over_time.csv", "text/csv", "Impact per structure that was hit, over time"},
-    {"timeseries.csv", "text/csv", "Front, volumes, energy and compression over time"},
+    {products::front_csv.name, "text/csv", products::front_csv.what},
+    {products::run_out_csv.name, "text/csv", products::run_out_csv.what},
+    {products::buildings_csv.name, "text/csv", products::buildings_csv.what},
+    {products::structures_csv.name, "text/csv", products::structures_csv.what},
+    {products::timeseries_csv.name, "text/csv", products::timeseries_csv.what},
     {"results.gpkg", "application/geopackage+sqlite3",
      "Release areas, buildings, intensity, flow path and front for a GIS"},
-    {"gauges.csv", "text/csv", "Depth and speed over time at every gauge", Needs::gauges},
+    {products::gauges_csv.name, "text/csv", products::gauges_csv.what, Needs::gauges},
     {"results.qlr", "application/xml", "Opens all layers in QGIS, styled"},
     {"results.kml", "application/vnd.google-earth.kml+xml",
      "Inundation, arrival times and structures hit, for Google Earth and phones", Needs::globe},
@@ -73,7 +74,7 @@ constexpr ExportFile export_files[] = {
     {"peak_thickness.qml", "application/xml", "QGIS style of it", Needs::erosion},
     {"erosion_depth.tif", "image/tiff", "Depth of erosion of the bed, m", Needs::erosion},
     {"erosion_depth.qml", "application/xml", "QGIS style of it", Needs::erosion},
-    {"erosion.csv", "text/csv", "Volume entrained from the bed against chainage", Needs::erosion},
+    {products::erosion_csv.name, "text/csv", products::erosion_csv.what, Needs::erosion},
 };
 
 const ExportFile* find_file(const std::string& name) {

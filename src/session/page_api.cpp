@@ -94,16 +94,25 @@ PageAnswer PageApi::get(std::string_view path, const Arguments& query, const Now
     }
     const std::vector<std::string> parts = parts_of(path);
     if (parts.size() < 4 || parts[0] != "api" || parts[1] != "scenarios") return not_here("GET", path);
-    if (parts.size() == 4 && parts[3] == "exports") {
-        // The files of a run are written by the program; a page offers the journal beside them.
-        const Reply state = session_.ask(parts[2], "state");
-        return to_answer(state.outcome == Outcome::done ? reply({{"files", json::array()}}) : state);
-    }
+    if (parts[3] == "exports" && parts.size() <= 5) return files(parts[2], parts.size() == 5 ? parts[4] : "");
     Arguments arguments = query;
     const Question* question = question_of(parts, arguments);
     if (question == nullptr) return not_here("GET", path);
     if (auto wrong = unknown_key(query, question->keys)) return *wrong;
     return to_answer(session_.ask(parts[2], question->name, arguments));
+}
+
+/// The list of a run's files, or one of them. Others, such as the report, are written by the program.
+PageAnswer PageApi::files(const std::string& scenario, const std::string& name) {
+    const auto files = session_.files(scenario);
+    if (!files) return to_answer(no_scenario(scenario));
+    json listed = json::array();
+    for (const twin::RunFile& file : *files) {
+        if (file.name == name) return {200, file.type, std::make_shared<const std::string>(file.bytes())};
+        listed.push_back({{"name", file.name}, {"bytes", nullptr}, {"what", file.what}});
+    }
+    if (name.empty()) return to_answer(reply({{"files", std::move(listed)}}));
+    return not_here("GET", fmt::format("/api/scenarios/{}/exports/{}", scenario, name));
 }
 
 PageAnswer PageApi::terrain(const Arguments& query) {

@@ -37,6 +37,7 @@ class PageApi {
 
   private:
     [[nodiscard]] PageAnswer get(std::string_view path, const Arguments& query, const Now& now);
+    [[nodiscard]] PageAnswer files(const std::string& scenario, const std::string& name);
     [[nodiscard]] PageAnswer terrain(const Arguments& query);
     [[nodiscard]] PageAnswer change(const std::string& method, std::string_view path, const nlohmann::json& body,
                                     const std::string& person, const Now& now);

@@ -97,6 +97,12 @@ Reply Session::ask(const std::string& scenario, const std::string& question, con
     return session::ask(*scenarios_, scenario, *found, arguments)();
 }
 
+std::optional<std::vector<twin::RunFile>> Session::files(const std::string& scenario) const {
+    const auto index = scenarios_->find(scenario);
+    if (!index) return {};
+    return scenarios_->at(*index).page_files();
+}
+
 std::optional<Clock::time_point> Session::advance(const Now& now, Clock::duration budget) {
     const Clock::time_point begin = now();
     room_->tick(begin);

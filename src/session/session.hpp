@@ -49,6 +49,8 @@ class Session final : private Watcher {
     [[nodiscard]] Reply end(const std::string& id, const std::string& scenario);
     /// `question`: the name of one of questions().
     [[nodiscard]] Reply ask(const std::string& scenario, const std::string& question, const Arguments& arguments = {});
+    /// As twin::Scenario::page_files; nothing: there is no such scenario.
+    [[nodiscard]] std::optional<std::vector<twin::RunFile>> files(const std::string& scenario) const;
     [[nodiscard]] Reply scene() const { return reply(scenarios_->at(0).scene_json()); }
     /// Of the first scenario's state now, as in its journal.
     [[nodiscard]] std::string hash() const { return to_hex(scenarios_->at(0).hash()); }

@@ -51,6 +51,12 @@ struct Done {
     std::string created;   ///< id of a new release, barrier or building; empty: none
 };
 
+/// A file of a run, made when it is asked for.
+struct RunFile {
+    std::string name, type, what;
+    std::function<std::string()> bytes;
+};
+
 /// Bits of a frame's `flags`.
 inline constexpr unsigned frame_running = 1, frame_too_compressed = 2, frame_recorded = 4;
 
@@ -154,6 +160,9 @@ class Scenario {
     [[nodiscard]] nlohmann::json results_json() const;
     /// `{"run_out": ..., "gauges": [...], "crs_wkt": ...}` of the run so far, as talus.h says.
     [[nodiscard]] nlohmann::json measures_json() const;
+    /// The files of the run so far that need no disk: tables and maps, as products() writes them. None before the
+    /// first step.
+    [[nodiscard]] std::vector<RunFile> page_files() const;
     /// Writes the run so far as `talus run` would, into an existing empty folder.
     [[nodiscard]] std::function<Status(const std::filesystem::path& folder)> products() const;
     /// The moving flow of the run so far (recorded_flow.hpp). It copies the results.

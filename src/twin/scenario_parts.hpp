@@ -76,6 +76,8 @@ struct Scenario::Parts {
     /// Also in the setups that can be undone to: what a gauge has measured is not undone.
     void follow_gauge(const GaugeReading& reading);
     void keep_past(Prepared& prepared);
+    /// What was changed during the run, so that its files are the result of no single setup; empty: nothing.
+    [[nodiscard]] std::string changed_text() const;
     /// The scene with the present setup, and the result of the run so far.
     [[nodiscard]] std::pair<scene::Scene, run::RunResult> outcome() const;
     void note_change(const nlohmann::json& action, const std::string& by, const std::string& sentence);

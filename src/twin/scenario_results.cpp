@@ -11,6 +11,7 @@
 #include "core/number_or_null.hpp"
 #include "observe/erosion.hpp"
 #include "observe/map_names.hpp"
+#include "products/page_files.hpp"
 #include "products/products.hpp"
 #include "products/results_json.hpp"
 #include "report/results.hpp"
@@ -166,12 +167,30 @@ json Scenario::measures_json() const {
     return {{"run_out", std::move(run_out)}, {"gauges", std::move(gauges)}, {"crs_wkt", parts_->scene->crs.wkt}};
 }
 
-std::function<Status(const std::filesystem::path&)> Scenario::products() const {
-    std::string changed;
-    for (const Parts::ChangeOnTheWay& change : parts_->changes) {
-        changed += fmt::format("{}{} at {:.1f} s", changed.empty() ? "" : "; ", change.sentence, change.time);
+std::vector<RunFile> Scenario::page_files() const {
+    if (step() == 0) return {};
+    const auto outcome = std::make_shared<const std::pair<scene::Scene, run::RunResult>>(parts_->outcome());
+    const auto& [scene, result] = *outcome;
+    std::vector<products::PageFile> made = products::tables_of(result, parts_->changed_text());
+    for (products::PageFile& map : products::plain_maps_of(scene, result)) made.push_back(std::move(map));
+    std::vector<RunFile> files;
+    for (products::PageFile& file : made) {
+        files.push_back({std::move(file.name), std::move(file.type), std::move(file.what),
+                         [outcome, bytes = std::move(file.bytes)] { return bytes(outcome->first, outcome->second); }});
     }
-    return [outcome = parts_->outcome(), changed = std::move(changed)](const std::filesystem::path& folder) {
+    return files;
+}
+
+std::string Scenario::Parts::changed_text() const {
+    std::string text;
+    for (const ChangeOnTheWay& change : changes) {
+        text += fmt::format("{}{} at {:.1f} s", text.empty() ? "" : "; ", change.sentence, change.time);
+    }
+    return text;
+}
+
+std::function<Status(const std::filesystem::path&)> Scenario::products() const {
+    return [outcome = parts_->outcome(), changed = parts_->changed_text()](const std::filesystem::path& folder) {
         return products::write_products(outcome.first, outcome.second, folder, {}, changed);
     };
 }

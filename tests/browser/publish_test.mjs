@@ -123,11 +123,20 @@ async function testEngine(opened, address) {
     await until(() => page.locator(".comparison thead th").allTextContents(), (heads) => /^A 4\.0.s$/.test(heads[1] ?? "") && /^B 4\.0.s$/.test(heads[2] ?? ""), "both in the table");
     await page.screenshot({ path: join(output, "engine.png") });
   });
-  await check("engine: the program replays the journal of the page to the same hash", async () => {
+  let archive = Buffer.alloc(0);
+  await check("engine: tables, maps and journal of the run are saved", async () => {
     await row("A").click();
     await page.getByRole("button", { name: "Export" }).click();
+    await page.getByLabel("All files").check();
     const [download] = await Promise.all([page.waitForEvent("download"), page.getByRole("button", { name: /^Save \d+ file/ }).click()]);
-    const text = fileOf(readFileSync(await download.path()), "journal.json");
+    archive = readFileSync(await download.path());
+    writeFileSync(join(output, "computed.zip"), archive);
+    if (!/^chainage_m,[^]*\n[\d.]+,[\d.]+,/.test(fileOf(archive, "front.csv"))) throw new Error(`front.csv is\n${fileOf(archive, "front.csv")}`);
+    for (const name of ["timeseries.csv", "buildings.csv"]) if (!fileOf(archive, name).includes("\n")) throw new Error(`${name} is empty`);
+    for (const name of ["peak_depth.tif", "peak_speed.tif", "intensity.tif"]) same(fileOf(archive, name).slice(0, 3), "II*", name);
+  });
+  await check("engine: the program replays the journal of the page to the same hash", async () => {
+    const text = fileOf(archive, "journal.json");
     const journal = JSON.parse(text);
     same(journal.actions.map((one) => one.action.action).join(" "), "set_parameter put_barrier", "actions");
     writeFileSync(join(output, "journal.json"), text);

@@ -4,6 +4,7 @@
 #include <optional>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include <gmock/gmock.h>
 
@@ -79,10 +80,25 @@ TEST_F(PageApiTest, answers_every_question_about_a_scenario) {
     EXPECT_EQ(ask("GET", "/api/scenarios/A/layers/colour").status, 404);
 }
 
-TEST_F(PageApiTest, a_run_has_no_files_but_its_journal) {
-    EXPECT_TRUE(content("GET", "/api/scenarios/A/exports").at("files").empty());
+TEST_F(PageApiTest, a_run_has_its_tables_and_maps_once_it_has_begun) {
+    const std::string exports = "/api/scenarios/A/exports";
+    EXPECT_TRUE(content("GET", exports).at("files").empty());
     EXPECT_THAT(refusal("GET", "/api/scenarios/Z/exports", "", 404), HasSubstr("no scenario Z"));
     EXPECT_TRUE(content("GET", "/api/scenarios/A/journal").contains("last"));
+
+    content("POST", "/api/scenarios/A/actions", R"({"action": "run"})");
+    while (content("GET", "/api/scenarios/A/state").at("step") < 20) session_->advance(now_, milliseconds(20));
+    std::vector<std::string> names;
+    for (const json& file : content("GET", exports).at("files")) {
+        names.push_back(file.at("name"));
+        const PageAnswer answer = ask("GET", exports + "/" + names.back());
+        EXPECT_EQ(answer.status, 200) << names.back();
+        EXPECT_GT(answer.body->size(), 20U) << names.back();
+        EXPECT_NE(file.at("what"), "") << names.back();
+    }
+    EXPECT_THAT(names, testing::IsSupersetOf({"front.csv", "timeseries.csv", "peak_depth.tif", "intensity.tif"}));
+    EXPECT_EQ(ask("GET", exports + "/front.csv").type, "text/csv");
+    EXPECT_THAT(refusal("GET", exports + "/report.html", "", 404), HasSubstr("needs the program"));
 }
 
 TEST_F(PageApiTest, what_needs_a_machine_is_refused_in_a_sentence) {

@@ -66,9 +66,9 @@ async function open(twin: Twin, picture: Picture): Promise<void> {
     all.indeterminate = ticked > 0 && ticked < rows.length;
   };
   count();
-  const hint = files.length > 0 ? "The files contain the run up to now, as talus run writes them."
-    : twin.can.change && !twin.can.server ? "A page writes no report, tables and maps of a run that it has computed; the journal repeats the run in the program (talus replay)."
-      : "No results yet: run the simulation first.";
+  const hint = files.length > 0
+    ? `The files contain the run up to now, as talus run writes them.${twin.can.change && !twin.can.server ? " The report is made by the program: talus replay repeats the run from its journal." : ""}`
+    : "No results yet: run the simulation first.";
   openDialog(dialog(`Export scenario ${scenario}`, h("p", { class: "hint" }, hint),
     h("div", { class: "row" }, h("label", { class: "check grow" }, all, "All files"), control),
     h("table", { class: "plain exports" }, h("tbody", {}, ...rows.map((row) => row.element))), flow));
