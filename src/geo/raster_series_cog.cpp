@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include "core/nodata.hpp"
 #include "geo/cog.hpp"
 #include "geo/raster_series.hpp"
 #include "geo/spatial_reference.hpp"
@@ -26,7 +27,7 @@ class FrameBand final : public GDALRasterBand {
 
     double GetNoDataValue(int* known) override {
         if (known != nullptr) *known = TRUE;
-        return nodata_value;
+        return nodata_in_files;
     }
     const char* GetUnitType() override { return quantity_.unit.c_str(); }
 
@@ -39,7 +40,7 @@ class FrameBand final : public GDALRasterBand {
             return CE_Failure;
         }
         for (int column = 0; column < nRasterXSize; ++column) {
-            if (std::isnan(values[column])) values[column] = static_cast<float>(nodata_value);
+            if (std::isnan(values[column])) values[column] = nodata_in_files;
         }
         return CE_None;
     }

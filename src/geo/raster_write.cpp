@@ -8,6 +8,7 @@
 #include <cpl_vsi.h>
 #include <fmt/format.h>
 
+#include "core/nodata.hpp"
 #include "geo/cog.hpp"
 #include "geo/gdal.hpp"
 #include "geo/raster.hpp"
@@ -31,7 +32,7 @@ GDALDatasetUniquePtr to_dataset(const RasterBand& band, const Crs& crs) {
     data->SetMetadataItem(GDALMD_AREA_OR_POINT, GDALMD_AOP_AREA);
     for (const auto& [key, value] : band.metadata) data->SetMetadataItem(key.c_str(), value.c_str());
     GDALRasterBand* target = data->GetRasterBand(1);
-    target->SetNoDataValue(nodata_value);
+    target->SetNoDataValue(nodata_in_files);
     target->SetDescription(band.description.c_str());
     target->SetUnitType(band.unit.c_str());
 
@@ -39,7 +40,7 @@ GDALDatasetUniquePtr to_dataset(const RasterBand& band, const Crs& crs) {
     for (int row = 0; row < geometry.rows; ++row) {
         for (int column = 0; column < geometry.columns; ++column) {
             const float value = band.grid->at(column, row);
-            line[static_cast<std::size_t>(column)] = std::isnan(value) ? static_cast<float>(nodata_value) : value;
+            line[static_cast<std::size_t>(column)] = std::isnan(value) ? nodata_in_files : value;
         }
         const CPLErr status = target->RasterIO(GF_Write, 0, geometry.rows - 1 - row, geometry.columns, 1, line.data(),
                                                geometry.columns, 1, GDT_Float32, 0, 0, nullptr);

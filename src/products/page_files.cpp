@@ -1,11 +1,13 @@
 #include "products/page_files.hpp"
 
 #include <bit>
+#include <cmath>
 #include <cstdint>
 #include <cstring>
 
 #include <fmt/format.h>
 
+#include "core/nodata.hpp"
 #include "products/writers.hpp"
 #include "report/hazard_map.hpp"
 #include "report/intensity.hpp"
@@ -86,7 +88,8 @@ class Tiff {
 std::string metadata_of(const report::HazardMap& map, const scene::Scene& scene, const run::RunResult& result) {
     std::string xml = "<GDALMetadata>\n";
     const auto item = [&](const std::string& name, const std::string& value, const char* of) {
-        xml += fmt::format("  <Item name=\"{}\"{}>{}</Item>\n", name, of, report::escape(value));
+        // Twice, as GDAL does and undoes it.
+        xml += fmt::format("  <Item name=\"{}\"{}>{}</Item>\n", name, of, report::escape(report::escape(value)));
     };
     for (const auto& [name, value] : origin_of(scene, result)) {
         if (name != "TIFFTAG_SOFTWARE") item(name, value, "");  // a tag of its own
@@ -104,9 +107,13 @@ std::string plain_geotiff(const Grid<float>& grid, int epsg, const std::string& 
     std::string strip;
     const std::size_t row_bytes = columns * sizeof(float);
     strip.reserve(row_bytes * rows);
+    std::vector<float> line(columns);
     for (std::size_t row = rows; row-- > 0;) {  // from the north
-        const float* const from = grid.values.data() + row * columns;
-        strip.append(reinterpret_cast<const char*>(from), row_bytes);
+        for (std::size_t column = 0; column < columns; ++column) {
+            const float value = grid.values[row * columns + column];
+            line[column] = std::isnan(value) ? nodata_in_files : value;
+        }
+        strip.append(reinterpret_cast<const char*>(line.data()), row_bytes);
     }
     Tiff tiff;
     tiff.longs(256, {columns});
@@ -129,27 +136,33 @@ std::string plain_geotiff(const Grid<float>& grid, int epsg, const std::string& 
     if (known) keys.insert(keys.end(), {3072, 0, 1, static_cast<std::uint16_t>(epsg)});
     tiff.shorts(34735, keys);
     if (!metadata.empty()) tiff.text(42112, metadata);
-    tiff.text(42113, "nan");  // GDAL's tag of what stands for no data
+    tiff.text(42113, fmt::format("{}", nodata_in_files));  // GDAL's tag
     return tiff.file(strip);
 }
 
 std::vector<PageFile> plain_maps_of(const scene::Scene& scene, const run::RunResult& result) {
     std::vector<PageFile> files;
-    const auto add = [&](const report::HazardMap& map, std::function<Grid<float>(const observe::Observation&)> si) {
+    const auto add = [&](const report::HazardMap& map,
+                         std::function<Grid<float>(const scene::Scene&, const observe::Observation&)> si) {
         files.push_back({map.file + ".tif", "image/tiff", map.unit.empty() ? map.title : map.title + ", " + map.unit,
                          [map, si = std::move(si)](const scene::Scene& of, const run::RunResult& run) {
-                             return plain_geotiff(report::in_unit(si(run.observation), map.factor), of.crs.epsg,
+                             return plain_geotiff(report::in_unit(si(of, run.observation), map.factor), of.crs.epsg,
                                                   metadata_of(map, of, run));
                          }});
     };
     for (const report::HazardMap& map : report::hazard_maps()) {
-        add(map, [grid = map.grid](const observe::Observation& o) { return o.maps.*grid; });
+        add(map, [grid = map.grid](const scene::Scene&, const observe::Observation& o) { return o.maps.*grid; });
     }
     const report::IntensityGuideline& guideline = report::intensity_guideline(scene.spec.outputs.intensity_guideline);
     add(intensity_style(guideline),
-        [&guideline](const observe::Observation& o) { return intensity_map(guideline, o.maps); });
+        [&guideline](const scene::Scene&, const observe::Observation& o) { return intensity_map(guideline, o.maps); });
+    if (scene.spec.outputs.peak_thickness) {
+        add(report::thickness_map(), [](const scene::Scene& of, const observe::Observation& o) {
+            return observe::normal_to_slope(o.maps.peak_depth, of.terrain);
+        });
+    }
     if (!result.observation.erosion.depth.values.empty()) {
-        add(report::erosion_map(), [](const observe::Observation& o) { return o.erosion.depth; });
+        add(report::erosion_map(), [](const scene::Scene&, const observe::Observation& o) { return o.erosion.depth; });
     }
     return files;
 }

@@ -104,14 +104,19 @@ PageAnswer PageApi::get(std::string_view path, const Arguments& query, const Now
 
 /// The list of a run's files, or one of them. Others, such as the report, are written by the program.
 PageAnswer PageApi::files(const std::string& scenario, const std::string& name) {
-    const auto files = session_.files(scenario);
-    if (!files) return to_answer(no_scenario(scenario));
+    if (name.empty() || scenario != files_of_) {
+        auto files = session_.files(scenario);
+        if (!files) return to_answer(no_scenario(scenario));
+        files_ = std::move(*files);
+        files_of_ = name.empty() ? scenario : "";
+    }
     json listed = json::array();
-    for (const twin::RunFile& file : *files) {
+    for (const twin::RunFile& file : files_) {
         if (file.name == name) return {200, file.type, std::make_shared<const std::string>(file.bytes())};
         listed.push_back({{"name", file.name}, {"bytes", nullptr}, {"what", file.what}});
     }
     if (name.empty()) return to_answer(reply({{"files", std::move(listed)}}));
+    if (files_.empty()) return refused(Outcome::unknown, "there are no results yet: run the simulation first");
     return not_here("GET", fmt::format("/api/scenarios/{}/exports/{}", scenario, name));
 }
 

@@ -4,6 +4,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include <nlohmann/json.hpp>
 
@@ -46,7 +47,9 @@ class PageApi {
     Session& session_;
     const scene::Scene& scene_;
     std::optional<Picture> orthophoto_;
-    std::map<int, Bytes> terrain_;  // encoded, by thinning factor: there are a few
+    std::vector<twin::RunFile> files_;  // of a run when its list was last asked for, so that all are of one moment
+    std::string files_of_;              // its scenario; empty: they were asked for without a list
+    std::map<int, Bytes> terrain_;      // encoded, by thinning factor: there are a few
 };
 
 }  // namespace talus::session

@@ -86,6 +86,7 @@ TEST_F(PageApiTest, a_run_has_its_tables_and_maps_once_it_has_begun) {
     EXPECT_THAT(refusal("GET", "/api/scenarios/Z/exports", "", 404), HasSubstr("no scenario Z"));
     EXPECT_TRUE(content("GET", "/api/scenarios/A/journal").contains("last"));
 
+    EXPECT_THAT(refusal("GET", exports + "/front.csv", "", 404), HasSubstr("no results yet"));
     content("POST", "/api/scenarios/A/actions", R"({"action": "run"})");
     while (content("GET", "/api/scenarios/A/state").at("step") < 20) session_->advance(now_, milliseconds(20));
     std::vector<std::string> names;
@@ -98,6 +99,14 @@ TEST_F(PageApiTest, a_run_has_its_tables_and_maps_once_it_has_begun) {
     }
     EXPECT_THAT(names, testing::IsSupersetOf({"front.csv", "timeseries.csv", "peak_depth.tif", "intensity.tif"}));
     EXPECT_EQ(ask("GET", exports + "/front.csv").type, "text/csv");
+    const Bytes listed = ask("GET", exports + "/timeseries.csv").body;
+    const int step = content("GET", "/api/scenarios/A/state").at("step");
+    for (int k = 0; k < 2000 && content("GET", "/api/scenarios/A/state").at("step") < step + 200; ++k) {
+        session_->advance(now_, milliseconds(20));
+    }
+    EXPECT_EQ(*ask("GET", exports + "/timeseries.csv").body, *listed) << "all files of a list are of one moment";
+    content("GET", exports);
+    EXPECT_NE(*ask("GET", exports + "/timeseries.csv").body, *listed);
     EXPECT_THAT(refusal("GET", exports + "/report.html", "", 404), HasSubstr("needs the program"));
 }
 

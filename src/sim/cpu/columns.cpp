@@ -1,7 +1,6 @@
 #include "sim/cpu/columns.hpp"
 
 #include <algorithm>
-#include <array>
 #include <bit>
 #include <cmath>
 #include <limits>

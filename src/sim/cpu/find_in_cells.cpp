@@ -68,7 +68,7 @@ constexpr auto compress_table() {
 }
 
 /// The same table as bytes, for four lanes of 32 bits.
-constexpr auto compress_bytes() {
+[[maybe_unused]] constexpr auto compress_bytes() {
     constexpr auto lanes = compress_table<4>();
     std::array<std::array<std::uint8_t, 16>, lanes.size()> bytes{};
     for (std::size_t mask = 0; mask < lanes.size(); ++mask) {

@@ -135,7 +135,7 @@ void Backend::apply_drag(const Model& model, const Ground& ground, State& state)
             Soil<double>& soil = state.soil_of_id[id];
             const Vector along = p.velocity - below.normal * dot(p.velocity, below.normal);
             const bool started = soil.thickness > 0;
-            if (!started) soil = wide(soil_of(model, std::vector<Soil<float>>{}, state.entry_of_id, id));
+            if (!started) soil = wide(first_soil_of(model, state.entry_of_id, id));
             const Water water = water_of(model, state.water_of_release, id);
             if (water.rises()) soil.pressure_ratio = started ? soil.pressure_ratio + water.rise : water.ratio;
             soil = evolve(model.evolving_pressure, soil, model.gravity * below.normal.z, thickness, length(along),

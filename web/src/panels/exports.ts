@@ -67,7 +67,7 @@ async function open(twin: Twin, picture: Picture): Promise<void> {
   };
   count();
   const hint = files.length > 0
-    ? `The files contain the run up to now, as talus run writes them.${twin.can.change && !twin.can.server ? " The report is made by the program: talus replay repeats the run from its journal." : ""}`
+    ? `The files contain the run up to now, as talus run writes them${twin.can.change && !twin.can.server ? "; maps are not compressed and have no styles, and a report needs the program" : ""}.`
     : "No results yet: run the simulation first.";
   openDialog(dialog(`Export scenario ${scenario}`, h("p", { class: "hint" }, hint),
     h("div", { class: "row" }, h("label", { class: "check grow" }, all, "All files"), control),
