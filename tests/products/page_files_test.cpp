@@ -35,6 +35,7 @@ struct Read {
 };
 
 Read read_map(const std::string& file) {
+    GDALAllRegister();
     const GDALDatasetUniquePtr data(GDALDataset::Open(file.c_str()));
     Read read;
     EXPECT_TRUE(data) << file;
