@@ -92,7 +92,10 @@ void print_comparison(const Rates& expected, const Rates& measured) {
 int check(const Rates& baseline, Calibration& calibration, const std::string& builtin_scene) {
     Rates expected = baseline, measured;
     std::vector<std::string> missed;
-    for (const int attempt : {1, 2}) {
+    // Other work on the machine only slows a measurement, so that the best one counts: the same program has shown 61 and
+    // 82 % within a minute.
+    constexpr int attempts = 4;
+    for (int attempt = 1; attempt <= attempts; ++attempt) {
         Result<Rates> rates = measure_all(calibration, builtin_scene);
         if (!rates) return fail(rates.error().message);
         measured = better_of(measured, *rates);
@@ -104,7 +107,7 @@ int check(const Rates& baseline, Calibration& calibration, const std::string& bu
         print_comparison(expected, measured);
         missed = slower(expected, measured, slowest_share);
         if (missed.empty()) return 0;
-        if (attempt == 1) print("slower than the baseline; once more\n");
+        if (attempt < attempts) print("slower than the baseline; once more\n");
     }
     return fail(fmt::format("slower than {:.0f} % of the baseline: {}; if that is meant, make it anew with --remake",
                             100 * slowest_share, fmt::join(missed, "; ")));
