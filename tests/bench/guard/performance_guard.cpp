@@ -92,8 +92,8 @@ void print_comparison(const Rates& expected, const Rates& measured) {
 int check(const Rates& baseline, Calibration& calibration, const std::string& builtin_scene) {
     Rates expected = baseline, measured;
     std::vector<std::string> missed;
-    // Other work on the machine only slows a measurement, so that the best one counts: the same program has shown 61 and
-    // 82 % within a minute.
+    // Other work on the machine only slows a measurement, so that the best one counts: the same program has shown 61
+    // and 82 % within a minute.
     constexpr int attempts = 4;
     for (int attempt = 1; attempt <= attempts; ++attempt) {
         Result<Rates> rates = measure_all(calibration, builtin_scene);
