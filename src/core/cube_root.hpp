@@ -5,7 +5,8 @@
 
 namespace talus {
 
-/// Of a finite number above 0, with the same bits wherever IEEE 754 holds: those of a C library's cbrt depend on the library.
+/// Of a finite number above 0, with the same bits wherever IEEE 754 holds: those of a C library's cbrt depend on the
+/// library.
 [[nodiscard]] inline double cube_root(double number) {
     // A third of the exponent is within 6 %; each of Newton's steps squares that.
     std::uint64_t bits = 0;
