@@ -174,6 +174,7 @@ std::vector<RunFile> Scenario::page_files() const {
     std::vector<products::PageFile> made = products::tables_of(result, parts_->changed_text());
     for (products::PageFile& map : products::plain_maps_of(scene, result)) made.push_back(std::move(map));
     std::vector<RunFile> files;
+    files.reserve(made.size());
     for (products::PageFile& file : made) {
         files.push_back({std::move(file.name), std::move(file.type), std::move(file.what),
                          [outcome, bytes = std::move(file.bytes)] { return bytes(outcome->first, outcome->second); }});
