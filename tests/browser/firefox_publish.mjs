@@ -1,5 +1,6 @@
 // A published page in Firefox, through its own remote protocol (Marionette): it opens from disk, shows its picture and plays;
 // with an engine it computes a run to its end. Usage: node firefox_publish.mjs TWIN.html FOLDER; ends with 77 without Firefox.
+// It needs a display for WebGL, such as that of Xvfb. No test of the suite.
 import { spawn, spawnSync } from "node:child_process";
 import { mkdirSync, mkdtempSync, rmSync, writeFileSync } from "node:fs";
 import { connect } from "node:net";

@@ -1,4 +1,4 @@
-// One ZIP file of several, stored as they are (PKWARE, APPNOTE.TXT 6.3.10): maps and pictures are compressed already.
+// One ZIP file of several, stored as they are (PKWARE, APPNOTE.TXT 6.3.10): most maps and all pictures are compressed already.
 
 /** A ZIP without 64-bit fields ends at 4 GB; a page does well with far less. */
 export const mostZipped_bytes = 1e9;
