@@ -17,6 +17,7 @@
 #include "ensemble/ensemble_products.hpp"
 #include "ensemble/fast_model.hpp"
 #include "ensemble_text.hpp"
+#include "evaluation_options.hpp"
 #include "exit_code.hpp"
 #include "interrupt.hpp"
 #include "layers.hpp"
@@ -29,12 +30,6 @@ namespace talus::cli {
 namespace {
 
 namespace fs = std::filesystem;
-
-/// What is made of the runs: may be changed later, by `merge`.
-struct Evaluation {
-    std::string depths, speeds, pressures;  ///< thresholds "0.5,1"; empty: the plan's
-    std::optional<double> return_period;    ///< years; absent: the plan's
-};
 
 struct EnsembleArguments {
     std::string scene;                 ///< a scene file; empty: the built-in scene
@@ -82,36 +77,6 @@ hit come with a smaller standard error (two_models.csv); maps and percentiles ar
 
 Exit codes: as talus run. A run that fails is listed with its fault, and the ensemble continues; 3: no run was complete.
 )";
-
-Status set_evaluation(ensemble::EnsemblePlan& plan, const Evaluation& evaluation) {
-    const auto set = [](std::vector<double>& values, const std::string& text, const char* option) -> Status {
-        if (text.empty()) return {};
-        TALUS_ASSIGN(values, ensemble::parse_thresholds(text, option));
-        return {};
-    };
-    TALUS_TRY(set(plan.thresholds.depth, evaluation.depths, "--depth-m"));
-    TALUS_TRY(set(plan.thresholds.speed, evaluation.speeds, "--speed-mps"));
-    TALUS_TRY(set(plan.thresholds.pressure, evaluation.pressures, "--pressure-kPa"));
-    if (const auto years = evaluation.return_period) {
-        if (!std::isfinite(*years) || !(*years > 0)) {
-            return Error{fmt::format("--return-period {} is refused; it must be a number above 0 (years)", *years)};
-        }
-        plan.return_period = years;
-    }
-    return {};
-}
-
-void add_evaluation(CLI::App& command, Evaluation& evaluation) {
-    command.add_option("--depth-m", evaluation.depths, "peak depths whose probability is mapped; default: 0.1,0.5,1")
-        ->type_name("M,M");
-    command.add_option("--speed-mps", evaluation.speeds, "likewise peak speeds; default: 5,10")->type_name("MPS,MPS");
-    command.add_option("--pressure-kPa", evaluation.pressures, "likewise pressures, on buildings too; default: 15,30")
-        ->type_name("KPA,KPA");
-    command
-        .add_option("--return-period", evaluation.return_period,
-                    "of the event that the runs are samples of: maps hazard zones")
-        ->type_name("YEARS");
-}
 
 /// The plan file, then the options over it.
 Result<ensemble::EnsemblePlan> read_arguments(const EnsembleArguments& arguments) {

@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include "calibrate/search_points.hpp"
 #include "core/try.hpp"
 #include "observe/observation.hpp"
 #include "stats/optimise.hpp"
@@ -76,22 +77,6 @@ class Searcher {
     std::size_t rounds_ = 0;
 };
 
-stats::Points points_of(const std::vector<SearchRun>& runs, bool complete_only) {
-    stats::Points points;
-    for (const SearchRun& run : runs) {
-        if (!complete_only || !run.predicted.empty()) points.push_back(run.point);
-    }
-    return points;
-}
-
-std::vector<double> predictions_of(const std::vector<SearchRun>& runs, std::size_t observation) {
-    std::vector<double> values;
-    for (const SearchRun& run : runs) {
-        if (!run.predicted.empty()) values.push_back(run.predicted[observation]);
-    }
-    return values;
-}
-
 stats::Points Searcher::run_points() const {
     return points_of(result_.runs, false);
 }
@@ -159,12 +144,6 @@ void Searcher::fit() {
                           : stats::PredictionEmulator::fit(points, values, observed_[j].unreached));
     }
     if (on_fit_ && result_.best) on_fit_(result_);
-}
-
-double square_distance(const std::vector<double>& a, const std::vector<double>& b) {
-    double square = 0;
-    for (std::size_t k = 0; k < a.size(); ++k) square += (a[k] - b[k]) * (a[k] - b[k]);
-    return square;
 }
 
 bool near_any(const std::vector<double>& point, const stats::Points& others) {

@@ -15,9 +15,10 @@
 #include <vector>
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
+#include "serve/answer_headers.hpp"
 #include "serve/connection.hpp"
+#include "serve/request_checks.hpp"
 #include "session/url.hpp"
 
 namespace talus::serve {
@@ -207,12 +208,7 @@ std::optional<Response> HttpConnection::refusal() {
         needs = route_->needs;
         keys = &route_->query;
     }
-    for (const auto& [key, value] : request_.query) {
-        if (std::find(keys->begin(), keys->end(), key) != keys->end()) continue;
-        return error_response(
-            400, fmt::format("{} is no key of this address; {}", key.substr(0, 40),
-                             keys->empty() ? "it has none" : fmt::format("it has {}", fmt::join(*keys, ", "))));
-    }
+    if (auto refused = refuse_keys(request_.query, *keys)) return refused;
     std::string token;
     if (websocket) {
         token = request_.query["token"];
@@ -223,22 +219,7 @@ std::optional<Response> HttpConnection::refusal() {
     }
     request_.role = context_.access.role_of(token);
     if (may(request_.role, needs)) return too_long();
-    if (request_.role == Role::nobody && needs == Role::trigger) {
-        return error_response(401,
-                              fmt::format("{}; header \"Authorization: Bearer TOKEN\" needs the token of triggers, "
-                                          "from the file of --trigger-token-file",
-                                          token.empty() ? "no token is given" : "the token is wrong"));
-    }
-    if (request_.role == Role::nobody && !token.empty()) {
-        return error_response(401, "the token is wrong; the server printed the right ones in its links");
-    }
-    if (request_.role == Role::nobody) {
-        return error_response(
-            401, "a token is needed, as header \"Authorization: Bearer TOKEN\"; the server printed it in its links");
-    }
-    if (request_.role == Role::trigger) return error_response(403, "a trigger's token is for POST /api/trigger alone");
-    if (needs == Role::trigger) return error_response(403, "this needs the token of triggers");
-    return error_response(403, "a viewer's token only reads; this needs the token of controllers");
+    return refuse_role(request_.role, needs, !token.empty());
 }
 
 void HttpConnection::read_body() {
@@ -358,40 +339,13 @@ void HttpConnection::give_file() {
     const std::string host = header(http::field::host);
     const bool packed = file->gzipped && header(http::field::accept_encoding).find("gzip") != std::string::npos;
     body_ = packed ? file->gzipped : file->content;
-    message.result(http::status::ok);
-    message.set(http::field::content_type, file->type);
-    if (packed) message.set(http::field::content_encoding, "gzip");
-    message.set(http::field::vary, "Accept-Encoding");
-    message.set(http::field::cache_control, file->for_ever ? "public, max-age=31536000, immutable" : "no-cache");
-    // Not every browser takes 'self' to mean the WebSocket too. The host is in the list.
-    message.set(
-        "Content-Security-Policy",
-        fmt::format(
-            "default-src 'self'; script-src 'self'; style-src 'self'; connect-src 'self' ws://{0} wss://{0}; "
-            "img-src 'self' blob: data:{1}; worker-src 'self' blob:; media-src 'self' blob:; object-src 'none'; "
-            "base-uri 'none'; form-action 'none'; frame-ancestors 'none'",
-            host, context_.tile_origins()));
-    message.set("Cross-Origin-Opener-Policy", "same-origin");
+    set_headers(message, *file, packed, host, context_.tile_origins());
     write(std::move(message));
 }
 
 void HttpConnection::respond(Response response) {
     http::response<http::span_body<const char>> message;
-    message.result(static_cast<unsigned>(response.status));
-    message.set(http::field::content_type, response.type);
-    message.set(http::field::cache_control, "no-store");
-    // As a page of its own it has an origin of its own: it has no part in this one's.
-    message.set("Content-Security-Policy",
-                response.document
-                    ? "default-src 'none'; style-src 'unsafe-inline'; script-src 'unsafe-inline'; img-src "
-                      "data:; font-src data:; base-uri 'none'; form-action 'none'; frame-ancestors 'none'; "
-                      "sandbox allow-scripts"
-                    : "default-src 'none'; frame-ancestors 'none'; sandbox");
-    if (response.status == 401) message.set(http::field::www_authenticate, "Bearer");
-    if (!response.allow.empty()) message.set(http::field::allow, response.allow);
-    if (!response.file_name.empty()) {
-        message.set(http::field::content_disposition, fmt::format("attachment; filename=\"{}\"", response.file_name));
-    }
+    set_headers(message, response);
     body_ = std::move(response.body);
     then_ = std::move(response.written);
     write(std::move(message));
@@ -400,9 +354,7 @@ void HttpConnection::respond(Response response) {
 void HttpConnection::write(http::response<http::span_body<const char>> message) {
     message.version(11);
     message.keep_alive(!close_);
-    message.set("X-Content-Type-Options", "nosniff");
-    message.set("Referrer-Policy", "no-referrer");
-    message.set("Cross-Origin-Resource-Policy", "same-origin");
+    set_common_headers(message);
     message.content_length(body_->size());
     if (request_.method != "HEAD") message.body() = beast::span<const char>(body_->data(), body_->size());
     message_ = std::move(message);
