@@ -1,8 +1,9 @@
 import { defineConfig } from "vite";
 
-// The page of published twins, in one script and one style sheet, and with PART=worker the script of its worker: talus publish
-// puts all of them into one file.
-const part = process.env["PART"] === "worker" ? "worker" : "page";
+// The page of published twins, in one script and one style sheet, and with PART=worker or loader the scripts of its worker and of
+// what loads it: talus publish puts all of them into one file.
+const inputs = { page: "src/published.ts", worker: "src/engine_worker.ts", loader: "src/loader.ts" };
+const part = (process.env["PART"] ?? "page") as keyof typeof inputs;
 
 export default defineConfig({
   build: {
@@ -15,7 +16,7 @@ export default defineConfig({
     modulePreload: { polyfill: false },
     chunkSizeWarningLimit: 1200,
     rollupOptions: {
-      input: part === "page" ? "src/published.ts" : "src/engine_worker.ts",
+      input: inputs[part],
       output: { inlineDynamicImports: true, entryFileNames: `${part}.js`, assetFileNames: "page[extname]" },
     },
   },

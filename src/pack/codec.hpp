@@ -15,6 +15,7 @@
 #include <utility>
 #include <vector>
 
+#include "core/byte_planes.hpp"
 #include "core/geometry.hpp"
 #include "core/grid.hpp"
 #include "core/utf8.hpp"
@@ -82,6 +83,16 @@ class Writer {
             });
         }
     }
+    /// Half a packed scene is terrain.
+    template <std::same_as<Grid<float>> T>
+    void put(const T& grid) {
+        const std::string differences = to_difference_planes(grid);
+        out_.map(2);
+        out_.text("geometry");
+        put(grid.geometry);
+        out_.text("differences");
+        out_.array(ArrayTag::uint8, differences.data(), differences.size());
+    }
     void put(const std::string& value) { out_.text(value); }
     void put(const std::filesystem::path& value) { out_.text(value.generic_string()); }
     void put(const std::set<std::string>& values) { put(std::vector<std::string>(values.begin(), values.end())); }
@@ -145,6 +156,17 @@ class Reader {
                 (get_member(names, members), ...);
             });
         }
+    }
+    template <std::same_as<Grid<float>> T>
+    void get(T& grid) {
+        grid.values.clear();
+        in_.map(2);
+        std::string_view name = "geometry";
+        get_member(name, grid.geometry);
+        if (in_.text() != "differences") return fail();
+        const std::string_view bytes = in_.array(ArrayTag::uint8, sizeof(std::uint8_t));
+        if (failed() || grid.geometry.columns < 1 || bytes.size() % sizeof(float) != 0) return fail();
+        grid.values = from_difference_planes(bytes, grid.geometry.columns);
     }
     void get(std::string& value) {
         value = in_.text();

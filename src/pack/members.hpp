@@ -13,12 +13,6 @@ TALUS_PACKED(PlanPoint, x, y)
 TALUS_PACKED(Polygon, outer, holes)
 TALUS_PACKED(GridGeometry, x_min, y_min, cell, columns, rows)
 
-template <class Value, class Visit>
-requires std::same_as<std::remove_const_t<Value>, Grid<float>>
-void visit_members(Value& grid, const Visit& visit) {
-    visit("geometry, values", grid.geometry, grid.values);
-}
-
 TALUS_PACKED(geo::Crs, wkt, name, epsg, local)
 
 TALUS_PACKED(params::SceneInfo, title, description, reconstruction, assumptions, sources, option)

@@ -89,19 +89,44 @@ std::string worker_with(const Engine& engine, std::string_view worker) {
 
 }  // namespace
 
+std::string text_of_bytes(std::string_view bytes) {
+    // Where such characters stand in HTML, 0 and the carriage return become others, and markup may begin.
+    const auto kept = [](unsigned symbol) { return symbol != 0 && symbol != '\r' && symbol != '<'; };
+    std::string text;
+    text.reserve(bytes.size() * 6 / 5 + 2);
+    unsigned held = 0;
+    int count = 0;
+    const auto put = [&] {
+        const unsigned symbol = held & 127U;
+        if (!kept(symbol)) text += '\xc2';  // UTF-8 of the character 128 higher
+        text += static_cast<char>(kept(symbol) ? symbol : symbol + 128);
+        held >>= 7U;
+        count -= 7;
+    };
+    for (const char byte : bytes) {
+        held |= unsigned{static_cast<unsigned char>(byte)} << count;
+        count += 8;
+        while (count >= 7) put();
+    }
+    if (count > 0) put();
+    return text;
+}
+
 std::string one_file(const PageFiles& page, const Content& content) {
-    const std::string script = inline_script(page.script), style(page.style);
-    std::string html = head(content, fingerprint(script), fingerprint(style), "'none'");
+    const std::string loader = inline_script(page.loader), style(page.style);
+    const std::string scripts = fmt::format("{} {}", fingerprint(loader), fingerprint(page.script));
+    std::string html = head(content, scripts, fingerprint(style), "'none'");
     html += fmt::format("<style>{}</style>\n{}", style, opening);
     html += block("about", json_block(content.about));
-    html += block("tape", base64(content.tape));
+    html += block("script", text_of_bytes(deflated(page.script)));
+    html += block("tape", text_of_bytes(content.tape));
     if (content.engine) {
-        html += block("scene", base64(content.scene));
+        html += block("scene", text_of_bytes(content.scene));
         // The scene is deflated already.
-        html += block("worker", base64(deflated(worker_with(*content.engine, page.worker))));
-        html += block("engine", base64(deflated(content.engine->wasm)));
+        html += block("worker", text_of_bytes(deflated(worker_with(*content.engine, page.worker))));
+        html += block("engine", text_of_bytes(deflated(content.engine->wasm)));
     }
-    html += "<script type=\"module\">" + script + "</script>\n</body>\n</html>\n";
+    html += "<script type=\"module\">" + loader + "</script>\n</body>\n</html>\n";
     return html;
 }
 

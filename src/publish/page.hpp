@@ -13,6 +13,7 @@ namespace talus::publish {
 struct PageFiles {
     std::string_view script, style;
     std::string_view worker;  ///< runs the engine; needed with one only
+    std::string_view loader;  ///< inflates the script; needed in one file only
 };
 
 /// What a published twin holds.
@@ -27,6 +28,9 @@ struct Content {
 struct File {
     std::string name, bytes;
 };
+
+/// Bytes as characters of a block of the page, seven bits in each: an eighth more, where base64 takes a third more.
+[[nodiscard]] std::string text_of_bytes(std::string_view bytes);
 
 /// One page that needs nothing else and reaches nothing: its own policy forbids it.
 [[nodiscard]] std::string one_file(const PageFiles& page, const Content& content);

@@ -38,9 +38,11 @@ std::string deflated(std::string_view bytes) {
 
 json Tape::keep(const std::string& type, std::string_view body) {
     const std::string packed = shrinks(type, body) ? deflated(body) : std::string(body);
-    json place = {{"type", type}, {"at", bodies_.size()}, {"size", packed.size()}};
+    // What is now is what was at the end.
+    const auto [known, is_new] = places_.try_emplace(packed, bodies_.size());
+    json place = {{"type", type}, {"at", known->second}, {"size", packed.size()}};
     if (packed.size() != body.size() || shrinks(type, body)) place["whole"] = body.size();
-    bodies_ += packed;
+    if (is_new) bodies_ += packed;
     return place;
 }
 

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <string>
 #include <string_view>
+#include <unordered_map>
 #include <vector>
 
 #include <nlohmann/json.hpp>
@@ -34,7 +35,8 @@ class Tape {
     };
     nlohmann::json messages_ = nlohmann::json::array();
     nlohmann::json answers_ = nlohmann::json::object(), times_ = nlohmann::json::object();
-    std::vector<Last> last_;  // of each address with times
+    std::vector<Last> last_;                               // of each address with times
+    std::unordered_map<std::string, std::size_t> places_;  // in bodies_, of each body once
     std::string bodies_;
 };
 

@@ -33,10 +33,7 @@ void add_terrain(Router& router, Session& session) {
                         session::thinning(whole.geometry, wanted->value_or(session::usual_terrain_cells));
                     session.worker().post([respond, encoded, factor, scene = session.scene()] {
                         Bytes& bytes = (*encoded)[factor];
-                        if (!bytes) {
-                            bytes = std::make_shared<const std::string>(
-                                twin::encode_grid(session::thinned_by(scene->terrain.elevation(), factor)));
-                        }
+                        if (!bytes) bytes = session::terrain_message(scene->terrain.elevation(), factor);
                         Response response;
                         response.type = "application/octet-stream";
                         response.body = bytes;

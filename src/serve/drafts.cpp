@@ -272,8 +272,7 @@ void Drafts::relief(const std::string& id, const Respond& respond) {
         if (terrain == nullptr) return respond(error_response(409, "there is no terrain yet, or it cannot be one"));
         Response response;
         response.type = "application/octet-stream";
-        response.body =
-            std::make_shared<const std::string>(twin::encode_grid(session::thinned(*terrain, relief_cells)));
+        response.body = session::terrain_message(*terrain, session::thinning(terrain->geometry, relief_cells));
         respond(response);
     });
 }

@@ -13,6 +13,7 @@
 #include <fmt/format.h>
 
 #include "core/try.hpp"
+#include "publish/compact_grid.hpp"
 #include "serve/library.hpp"
 #include "serve/site_archive.hpp"
 #include "session/json_text.hpp"
@@ -111,13 +112,14 @@ class Asker {
 /// An answer for the tape; one that is refused is left out, and the page says that the file has none.
 Status keep(Asker& asker, publish::Tape& tape, const std::string& path, Arguments query = {}) {
     TALUS_ASSIGN(const Response response, asker.get(path, std::move(query)));
-    if (response.status == 200 && response.body) tape.add(path, response.type, *response.body);
+    if (response.status == 200 && response.body) tape.add(path, response.type, publish::compact_grid(*response.body));
     return {};
 }
 
 Status keep_at(Asker& asker, publish::Tape& tape, const std::string& path, double time) {
     TALUS_ASSIGN(const Response response, asker.get(path, {{"time_s", fmt::format("{:.6f}", time)}}));
-    if (response.status == 200 && response.body) tape.add_at(path, time, response.type, *response.body);
+    if (response.status == 200 && response.body)
+        tape.add_at(path, time, response.type, publish::compact_grid(*response.body));
     return {};
 }
 
@@ -245,7 +247,7 @@ Status record_session(Asker& asker, publish::Tape& tape) {
     TALUS_ASSIGN(json session, asker.get_json("session"));
     tape.add("session", "application/json", to_text(without_people(std::move(session))));
     TALUS_ASSIGN(const Response terrain, asker.get("terrain", {{"max_cells", fmt::format("{}", mesh_cells)}}));
-    if (terrain.status == 200) tape.add("terrain", terrain.type, *terrain.body);
+    if (terrain.status == 200) tape.add("terrain", terrain.type, publish::compact_grid(*terrain.body));
     TALUS_ASSIGN(const json overlays, asker.get_json("overlays"));
     tape.add("overlays", "application/json", to_text(without_tiles(overlays)));
     if (overlays.at("tiles").empty()) {
@@ -341,6 +343,7 @@ Result<publish::PageFiles> published_page() {
         if (file.name == "published/page.js") page.script = file.content;
         if (file.name == "published/page.css") page.style = file.content;
         if (file.name == "published/worker.js") page.worker = file.content;
+        if (file.name == "published/loader.js") page.loader = file.content;
     }
     if (page.script.empty())
         return Error{"this program was built without the page (TALUS_WEB); it cannot publish a twin"};

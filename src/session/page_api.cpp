@@ -127,7 +127,7 @@ PageAnswer PageApi::terrain(const Arguments& query) {
     const Grid<float>& whole = scene_.terrain.elevation();
     const int factor = thinning(whole.geometry, wanted->value_or(usual_terrain_cells));
     Bytes& bytes = terrain_[factor];
-    if (!bytes) bytes = std::make_shared<const std::string>(twin::encode_grid(thinned_by(whole, factor)));
+    if (!bytes) bytes = terrain_message(whole, factor);
     return {200, "application/octet-stream", bytes};
 }
 

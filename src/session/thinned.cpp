@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "twin/scenario.hpp"
+
 namespace talus::session {
 namespace {
 
@@ -40,6 +42,11 @@ Grid<float> thinned_by(const Grid<float>& whole, int factor) {
         }
     }
     return thin;
+}
+
+std::shared_ptr<const std::string> terrain_message(const Grid<float>& elevation, int factor) {
+    return std::make_shared<const std::string>(
+        twin::encode_grid(thinned_by(elevation, factor), twin::GridCoding::differences));
 }
 
 }  // namespace talus::session

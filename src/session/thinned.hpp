@@ -1,5 +1,8 @@
 #pragma once
 
+#include <memory>
+#include <string>
+
 #include "core/grid.hpp"
 
 namespace talus::session {
@@ -15,5 +18,8 @@ inline constexpr double fewest_terrain_cells = 100, most_terrain_cells = 16e6, u
 
 /// The middle one of every `factor` x `factor` cells.
 [[nodiscard]] Grid<float> thinned_by(const Grid<float>& whole, int factor);
+
+/// The same as a grid message for a page.
+[[nodiscard]] std::shared_ptr<const std::string> terrain_message(const Grid<float>& elevation, int factor);
 
 }  // namespace talus::session

@@ -6,6 +6,7 @@
 #include <limits>
 #include <zlib.h>
 
+#include "core/byte_planes.hpp"
 #include "core/grid.hpp"
 #include "twin/pore_pressure_map.hpp"
 #include "twin/scenario.hpp"
@@ -207,12 +208,17 @@ std::vector<DebrisAt> debris_in_window(const Frame& frame) {
     return cells;
 }
 
-std::string encode_grid(const Grid<float>& grid) {
+std::string encode_grid(const Grid<float>& grid, GridCoding coding) {
     Header header;
-    header.add(std::array<char, 4>{'T', 'L', 'S', 'G'}).add(std::array<std::uint8_t, 4>{1, 0, 0, 0});
+    header.add(std::array<char, 4>{'T', 'L', 'S', 'G'});
+    header.add(std::array<std::uint8_t, 4>{2, static_cast<std::uint8_t>(coding), 0, 0});
     header.add(grid.geometry.x_min).add(grid.geometry.y_min).add(grid.geometry.cell);
     header.add(static_cast<std::uint32_t>(grid.geometry.columns)).add(static_cast<std::uint32_t>(grid.geometry.rows));
-    return header.take_with(grid.values.data(), grid.values.size() * sizeof(float), Z_DEFAULT_STRATEGY);
+    if (coding == GridCoding::values) {
+        return header.take_with(grid.values.data(), grid.values.size() * sizeof(float), Z_DEFAULT_STRATEGY);
+    }
+    const std::string planes = to_difference_planes(grid);
+    return header.take_with(planes.data(), planes.size(), Z_DEFAULT_STRATEGY);
 }
 
 }  // namespace talus::twin

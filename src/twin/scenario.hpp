@@ -190,7 +190,11 @@ class Scenario {
     std::unique_ptr<Parts> parts_;
 };
 
+/// How a grid message holds its values: as they are, or as differences (core/byte_planes.hpp), which takes half the
+/// bytes where a raster is smooth as terrain is.
+enum class GridCoding : std::uint8_t { values, differences };
+
 /// Encodes a grid message.
-[[nodiscard]] std::string encode_grid(const Grid<float>& grid);
+[[nodiscard]] std::string encode_grid(const Grid<float>& grid, GridCoding coding = GridCoding::values);
 
 }  // namespace talus::twin

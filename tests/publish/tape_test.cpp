@@ -82,6 +82,16 @@ TEST(Tape, keeps_what_did_not_change_once) {
     EXPECT_EQ(read.head["times"]["scenarios/B/impacts"].size(), 1U);
 }
 
+TEST(Tape, keeps_bodies_that_are_the_same_once) {
+    Tape tape;
+    tape.add("scenarios/A/layers/depth", "application/octet-stream", "TLSG of the end");
+    const std::size_t once = tape.size();
+    tape.add_at("scenarios/A/layers/depth", 9, "application/octet-stream", "TLSG of the end");
+    EXPECT_EQ(tape.size(), once);
+    const Read read(tape.pack());
+    EXPECT_EQ(read.body(read.head["times"]["scenarios/A/layers/depth"][0]), "TLSG of the end");
+}
+
 TEST(Tape, a_name_that_is_no_UTF_8_does_not_break_it) {
     Tape tape;
     tape.say({{"type", "setup"},

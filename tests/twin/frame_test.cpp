@@ -5,6 +5,7 @@
 
 #include <gmock/gmock.h>
 
+#include "core/byte_planes.hpp"
 #include "twin/recording.hpp"
 #include "twin_fixtures.hpp"
 
@@ -232,7 +233,7 @@ TEST(Grid, message_is_as_the_protocol_says) {
     grid.values = {1, 2, 3, 4, 5, NAN};
     const std::string bytes = encode_grid(grid);
     EXPECT_EQ(bytes.substr(0, 4), "TLSG");
-    EXPECT_EQ(at<std::uint32_t>(bytes, 4), 1U);
+    EXPECT_EQ((at<std::array<std::uint8_t, 4>>(bytes, 4)), (std::array<std::uint8_t, 4>{2, 0, 0, 0}));
     EXPECT_EQ((at<std::array<double, 3>>(bytes, 8)), (std::array<double, 3>{west, south, 2.5}));
     EXPECT_EQ((at<std::array<std::uint32_t, 2>>(bytes, 32)), (std::array<std::uint32_t, 2>{3, 2}));
     std::array<float, 6> values{};
@@ -243,6 +244,18 @@ TEST(Grid, message_is_as_the_protocol_says) {
               Z_OK);
     EXPECT_EQ(values[3], 4);
     EXPECT_TRUE(std::isnan(values[5]));
+
+    const std::string smooth = encode_grid(grid, GridCoding::differences);
+    EXPECT_EQ((at<std::array<std::uint8_t, 4>>(smooth, 4)), (std::array<std::uint8_t, 4>{2, 1, 0, 0}));
+    EXPECT_EQ(smooth.substr(8, 36), bytes.substr(8, 36));
+    std::string planes(sizeof values, '\0');
+    size = planes.size();
+    ASSERT_EQ(uncompress(reinterpret_cast<Bytef*>(planes.data()), &size,
+                         reinterpret_cast<const Bytef*>(smooth.data() + 44), smooth.size() - 44),
+              Z_OK);
+    const std::vector<float> again = from_difference_planes(planes, 3);
+    EXPECT_EQ(again[3], 4);
+    EXPECT_TRUE(std::isnan(again[5]));
 }
 
 }  // namespace

@@ -7,6 +7,7 @@ import "./style/touch.css";
 import "./style/published.css";
 import { openPage } from "./page";
 import { Api } from "./protocol/api";
+import { blockOf, inflatedBlock } from "./protocol/block";
 import type { StartPage } from "./protocol/start";
 import { Local, type HostPort } from "./protocol/local";
 import { Recorded } from "./protocol/recorded";
@@ -24,31 +25,15 @@ interface About { version: number; title: string; program: string; program_versi
 
 const textOf = (id: string): string | null => document.getElementById(id)?.textContent ?? null;
 
-/** Of a block of the file, in base64. Its text goes: it is not needed twice. */
-function blockOf(id: string): Uint8Array | null {
-  const block = document.getElementById(id);
-  if (block === null) return null;
-  const text = atob(block.textContent ?? "");
-  block.remove();
-  return Uint8Array.from(text, (c) => c.charCodeAt(0));
-}
 /** A block as it is, otherwise a file beside the page. */
 const bytesOf = async (id: string, file: string): Promise<Uint8Array> =>
   blockOf(id) ?? new Uint8Array(await (await fetch(file)).arrayBuffer());
 
-/** A deflated block, inflated; null: the page has none. */
-async function inflatedBlock(id: string, type = ""): Promise<Blob | null> {
-  const packed = blockOf(id);
-  if (packed === null) return null;
-  const stream = new Blob([packed as BlobPart]).stream().pipeThrough(new DecompressionStream("deflate"));
-  return new Blob([await new Response(stream).arrayBuffer()], { type });
-}
-
 /** The worker of the engine: from the file itself, or from beside the page. */
 async function engineWorker(): Promise<Worker> {
-  const script = await inflatedBlock("worker", "text/javascript");
+  const script = await (await inflatedBlock("worker"))?.arrayBuffer();
   // No module: it imports nothing, and a page from disk has no origin that a module could be asked from.
-  return new Worker(script === null ? "worker.js" : URL.createObjectURL(script));
+  return new Worker(script === undefined ? "worker.js" : URL.createObjectURL(new Blob([script], { type: "text/javascript" })));
 }
 
 async function openEngine(beside: Transport): Promise<Local> {

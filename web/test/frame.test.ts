@@ -107,6 +107,34 @@ describe("grid", () => {
     expect(gridAt(grid, west + 10, south + 25) - gridAt(grid, west + 11, south + 25)).toBeCloseTo(0.577, 3);
     expect(gridAt(grid, west + 80, south + 5) - gridAt(grid, west + 80, south + 6)).toBeCloseTo(0.5, 3);
   });
+  it("reads every coding to the bit", async () => {
+    const [columns, rows] = [5, 3];
+    const values = Float32Array.from({ length: columns * rows }, (_, i) => (i === 7 ? NaN : 100 + 0.37 * i * i));
+    values[3] = -0;
+    const bits = new Int32Array(values.buffer);
+    // The laws of docs/protocol.md, written once more.
+    const folded = bits.map((bit, i) => {
+      const [west, south] = [i % columns > 0, i >= columns];
+      const d = (bit - ((west ? bits[i - 1]! : 0) + (south ? bits[i - columns]! : 0) - (west && south ? bits[i - columns - 1]! : 0))) | 0;
+      return (d << 1) ^ (d >> 31);
+    });
+    const planes = (numbers: Int32Array): Uint8Array => Uint8Array.from([0, 8, 16, 24].flatMap((shift) => [...numbers].map((n) => (n >>> shift) & 255)));
+    const message = (coding: number, body: Uint8Array): ArrayBuffer => {
+      const packed = deflateSync(body);
+      const bytes = new Uint8Array(44 + packed.length);
+      bytes.set(new TextEncoder().encode("TLSG"));
+      bytes.set([2, coding], 4);
+      const head = new DataView(bytes.buffer);
+      [columns, rows, body.length].forEach((n, i) => head.setUint32(32 + 4 * i, n, true));
+      bytes.set(packed, 44);
+      return bytes.buffer;
+    };
+    for (const [coding, body] of [[0, new Uint8Array(values.buffer)], [1, planes(folded)], [2, planes(bits)]] as const) {
+      const grid = await decodeGrid(message(coding, body));
+      expect([...new Int32Array(grid.values.buffer, grid.values.byteOffset, grid.values.length)], `coding ${coding}`).toEqual([...bits]);
+    }
+    await expect(decodeGrid(message(3, planes(bits)))).rejects.toThrow(MalformedMessage);
+  });
   it("is read between cell centres, with rows from the south", () => {
     const grid = { west: 0, south: 0, cell: 2, columns: 3, rows: 2, values: Float32Array.of(1, 2, 3, 4, NaN, 6) };
     expect(gridAt(grid, 1, 1)).toBe(1);

@@ -14,12 +14,16 @@ export interface Grid {
 }
 
 const headBytes = 44;
+const version = 2;
+/** Values as they are; differences (src/core/byte_planes.hpp); values in byte planes. */
+const codings = { values: 0, differences: 1, planes: 2 } as const;
 
 export async function decodeGrid(data: ArrayBuffer): Promise<Grid> {
   const bytes = new Uint8Array(data);
   if (data.byteLength < headBytes || tag(bytes) !== "TLSG") throw new MalformedMessage("no grid");
   const head = new DataView(data);
-  if (head.getUint8(4) !== 1) throw new MalformedMessage(`grid of version ${head.getUint8(4)}; this page reads version 1`);
+  if (head.getUint8(4) !== version) throw new MalformedMessage(`grid of version ${head.getUint8(4)}; this page reads version ${version}`);
+  const coding = head.getUint8(5);
   const columns = head.getUint32(32, true);
   const rows = head.getUint32(36, true);
   const size = head.getUint32(40, true);
@@ -31,8 +35,30 @@ export async function decodeGrid(data: ArrayBuffer): Promise<Grid> {
     cell: head.getFloat64(24, true),
     columns,
     rows,
-    values: new Float32Array(body.buffer, 0, columns * rows),
+    values: valuesOf(body, coding, columns),
   };
+}
+
+function valuesOf(body: Uint8Array, coding: number, columns: number): Float32Array {
+  if (coding === codings.values) return new Float32Array(body.buffer, 0, body.length / 4);
+  if (coding !== codings.differences && coding !== codings.planes) throw new MalformedMessage(`grid of coding ${coding}; this page reads codings 0 to 2`);
+  const count = body.length / 4;
+  const bits = new Int32Array(count);
+  for (let i = 0; i < count; ++i) bits[i] = body[i]! | (body[count + i]! << 8) | (body[2 * count + i]! << 16) | (body[3 * count + i]! << 24);
+  if (coding === codings.differences) undoDifferences(bits, columns);
+  return new Float32Array(bits.buffer);
+}
+
+/** From folded differences to the plane through the western, southern and south-western neighbours; along the first row and column to the one before. */
+function undoDifferences(bits: Int32Array, columns: number): void {
+  for (let i = 0, column = 0; i < bits.length; ++i) {
+    const folded = bits[i]!;
+    let predicted = 0;
+    if (column > 0) predicted = i < columns ? bits[i - 1]! : bits[i - 1]! + bits[i - columns]! - bits[i - columns - 1]!;
+    else if (i > 0) predicted = bits[i - columns]!;
+    bits[i] = (((folded >>> 1) ^ -(folded & 1)) + predicted) | 0;
+    column = column + 1 === columns ? 0 : column + 1;
+  }
 }
 
 /** Bilinear value at a place; NaN outside, and where none of the four surrounding cells has a value. */
