@@ -1,18 +1,17 @@
 #include "core/byte_planes.hpp"
 
-#include <bit>
 #include <cassert>
+#include <cstring>
 
 namespace talus {
 namespace {
 
 /// From the values before `i`; beyond the edge the nearest row or column stands alone.
-template <class BitsAt>
-std::uint32_t predicted(std::size_t i, std::size_t columns, const BitsAt& bits_at) {
+std::uint32_t predicted(const std::vector<std::uint32_t>& bits, std::size_t i, std::size_t columns) {
     if (i == 0) return 0;
-    if (i < columns) return bits_at(i - 1);
-    if (i % columns == 0) return bits_at(i - columns);
-    return bits_at(i - 1) + bits_at(i - columns) - bits_at(i - columns - 1);
+    if (i < columns) return bits[i - 1];
+    if (i % columns == 0) return bits[i - columns];
+    return bits[i - 1] + bits[i - columns] - bits[i - columns - 1];
 }
 
 std::uint32_t fold(std::uint32_t difference) {
@@ -37,24 +36,24 @@ std::string to_byte_planes(std::span<const std::uint32_t> numbers) {
 
 std::string to_difference_planes(const Grid<float>& grid) {
     const auto columns = static_cast<std::size_t>(grid.geometry.columns);
-    const auto bits_at = [&](std::size_t i) { return std::bit_cast<std::uint32_t>(grid.values[i]); };
-    std::vector<std::uint32_t> folded(grid.values.size());
-    for (std::size_t i = 0; i < folded.size(); ++i) folded[i] = fold(bits_at(i) - predicted(i, columns, bits_at));
+    std::vector<std::uint32_t> bits(grid.values.size()), folded(bits.size());
+    if (!bits.empty()) std::memcpy(bits.data(), grid.values.data(), bits.size() * sizeof(float));
+    for (std::size_t i = 0; i < bits.size(); ++i) folded[i] = fold(bits[i] - predicted(bits, i, columns));
     return to_byte_planes(folded);
 }
 
 std::vector<float> from_difference_planes(std::string_view bytes, int columns) {
     assert(bytes.size() % 4 == 0 && columns > 0);
-    const std::size_t count = bytes.size() / 4;
-    std::vector<float> values(count);
-    const auto bits_at = [&](std::size_t i) { return std::bit_cast<std::uint32_t>(values[i]); };
-    for (std::size_t i = 0; i < count; ++i) {
+    std::vector<std::uint32_t> bits(bytes.size() / 4);
+    for (std::size_t i = 0; i < bits.size(); ++i) {
         std::uint32_t folded = 0;
         for (std::size_t plane = 0; plane < 4; ++plane) {
-            folded |= std::uint32_t{static_cast<unsigned char>(bytes[plane * count + i])} << 8U * plane;
+            folded |= std::uint32_t{static_cast<unsigned char>(bytes[plane * bits.size() + i])} << 8U * plane;
         }
-        values[i] = std::bit_cast<float>(unfold(folded) + predicted(i, static_cast<std::size_t>(columns), bits_at));
+        bits[i] = unfold(folded) + predicted(bits, i, static_cast<std::size_t>(columns));
     }
+    std::vector<float> values(bits.size());
+    if (!bits.empty()) std::memcpy(values.data(), bits.data(), bits.size() * sizeof(float));
     return values;
 }
 
