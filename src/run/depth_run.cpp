@@ -20,6 +20,7 @@
 #include "run/forecast.hpp"
 #include "run/grid_fault.hpp"
 #include "run/grid_stages.hpp"
+#include "run/inflow_energy.hpp"
 #include "run/saved_state.hpp"
 #include "run/stop_rule.hpp"
 #include "run/threads.hpp"
@@ -36,63 +37,7 @@ double volume_of(const std::vector<terrain::Release>& releases) {
     return sum;
 }
 
-/// Finds how much energy inflows bring.
-class InflowEnergy {
-  public:
-    InflowEnergy(const depth::Solver& solver, const std::vector<terrain::Inflow>& inflows) : inflows_(inflows) {
-        for (const terrain::Inflow& inflow : inflows) {
-            places_.emplace_back();
-            inflow.over_area() ? add_area(solver, inflow) : add_line(solver, inflow);
-        }
-    }
-    /// The highest energy line of what comes in now, m above the lowest known ground: ground, debris and velocity head.
-    [[nodiscard]] double highest(const depth::Solver& solver) const {
-        double highest = 0;
-        for (std::size_t k = 0; k < places_.size(); ++k) {
-            const double speed = inflows_[k].velocity_at(solver.time());
-            const double head = speed * speed / (2 * solver.material().gravity);
-            for (const auto& [column, row] : places_[k]) {
-                const double surface = double{solver.bed_at(column, row)} + solver.depth_at(column, row);
-                highest = std::max(highest, surface + head);
-            }
-        }
-        return highest;
-    }
-
-  private:
-    void add_line(const depth::Solver& solver, const terrain::Inflow& inflow) {
-        const PlanPoint along{inflow.to.x - inflow.from.x, inflow.to.y - inflow.from.y};
-        const int parts = 1 + static_cast<int>(2 * std::hypot(along.x, along.y) / solver.geometry().cell);
-        for (int k = 0; k <= parts; ++k) {
-            const double s = static_cast<double>(k) / parts;
-            add(solver, {inflow.from.x + s * along.x, inflow.from.y + s * along.y});
-        }
-    }
-    void add_area(const depth::Solver& solver, const terrain::Inflow& inflow) {
-        const GridGeometry& g = solver.geometry();
-        for (const Polygon& polygon : inflow.area) {
-            for (const PlanPoint& corner : polygon.outer) add(solver, corner);
-            const Extent e = extent_of(polygon);
-            for (double y = e.y_min; y <= e.y_max; y += g.cell) {
-                for (double x = e.x_min; x <= e.x_max; x += g.cell) {
-                    if (contains(polygon, {x, y})) add(solver, {x, y});
-                }
-            }
-        }
-    }
-    void add(const depth::Solver& solver, const PlanPoint& p) {
-        const GridGeometry& g = solver.geometry();
-        const double column = std::floor((p.x - g.x_min) / g.cell), row = std::floor((p.y - g.y_min) / g.cell);
-        if (!(column >= 0 && row >= 0 && column < g.columns && row < g.rows)) return;
-        const std::pair cell(static_cast<int>(column), static_cast<int>(row));
-        if (solver.known(cell.first, cell.second)) places_.back().push_back(cell);
-    }
-
-    const std::vector<terrain::Inflow>& inflows_;
-    std::vector<std::vector<std::pair<int, int>>> places_;  ///< columns and rows, by inflow
-};
-
-/// A run of the depth-averaged model, step by step.
+/// What a run of the model is made of.
 class GridRun {
   public:
     GridRun(const scene::Scene& scene, Inside inside)
@@ -348,37 +293,33 @@ class GridRun {
 
 }  // namespace
 
-Result<RunResult> run_depth_averaged(const scene::Scene& scene, const RunOptions& options, Inside inside) {
-    const Threads threads(scene.spec.solver.thread_count);
-    return threads.execute([&]() -> Result<RunResult> {
-        const StopWatch seeding;
-        GridRun run(scene, inside);
-        TALUS_TRY(run.check_inflows());
-        if (!options.start_from.empty()) {
-            const Status restored = run.restore(options.start_from);
-            if (!restored) return Error{options.start_from_file + ": " + restored.error().message};
-        }
-        StateClock state_clock(options);
-        const auto look_at_state = [&](bool at_end = false) {
-            if (state_clock.due(run.time(), at_end)) options.on_state(run.state(), run.time());
-        };
-        const auto stopped = [&] { return options.stop_requested && options.stop_requested->load(); };
-        FrameClock clock(scene, options);
-        const auto show_frame = [&](bool at_end = false) {
-            if (clock.due(run.time(), at_end)) options.on_frame(run.frame());
-        };
-        const double seed_time = seeding.seconds();
-        show_frame();
+struct DepthRun::Parts {
+    Parts(const scene::Scene& scene, const RunOptions& run_options, Inside inside)
+        : options(run_options),
+          threads(scene.spec.solver.thread_count),
+          run(scene, inside),
+          state_clock(options),
+          frame_clock(scene, options) {}
+
+    void look_at_state(bool at_end = false) {
+        if (state_clock.due(run.time(), at_end)) options.on_state(run.state(), run.time());
+    }
+    void show_frame(bool at_end = false) {
+        if (frame_clock.due(run.time(), at_end)) options.on_frame(run.frame());
+    }
+    /// A step. False: it is over.
+    bool advance() {
+        if (options.stop_requested && options.stop_requested->load()) return false;
+        if (state_clock.wanted()) run.keep_before_end();
+        const bool goes_on = run.advance();
+        if (options.on_grid_step) options.on_grid_step(run.solver());
+        if (!goes_on) return false;
         look_at_state();
-        for (bool goes_on = true; goes_on && !stopped();) {
-            if (state_clock.wanted()) run.keep_before_end();
-            goes_on = run.advance();
-            if (options.on_grid_step) options.on_grid_step(run.solver());
-            if (!goes_on) break;
-            look_at_state();
-            show_frame();
-            if (options.on_progress) options.on_progress(run.progress());
-        }
+        show_frame();
+        if (options.on_progress) options.on_progress(run.progress());
+        return true;
+    }
+    RunResult finish() {
         if (!run.fault()) {
             look_at_state(true);
             show_frame(true);
@@ -387,7 +328,54 @@ Result<RunResult> run_depth_averaged(const scene::Scene& scene, const RunOptions
         RunResult result = run.result(threads.count());
         result.seed_time = seed_time;
         result.finish_time = finishing.seconds();
-        return Result<RunResult>(std::move(result));
+        return result;
+    }
+
+    const RunOptions& options;
+    Threads threads;
+    GridRun run;
+    StateClock state_clock;
+    FrameClock frame_clock;
+    double seed_time = 0;
+};
+
+DepthRun::DepthRun(std::unique_ptr<Parts> parts) : parts_(std::move(parts)) {}
+DepthRun::DepthRun(DepthRun&&) noexcept = default;
+DepthRun& DepthRun::operator=(DepthRun&&) noexcept = default;
+DepthRun::~DepthRun() = default;
+
+Result<DepthRun> DepthRun::start(const scene::Scene& scene, const RunOptions& options, Inside inside) {
+    const Threads threads(scene.spec.solver.thread_count);
+    return threads.execute([&]() -> Result<DepthRun> {
+        const StopWatch seeding;
+        auto parts = std::make_unique<Parts>(scene, options, inside);
+        TALUS_TRY(parts->run.check_inflows());
+        if (!options.start_from.empty()) {
+            const Status restored = parts->run.restore(options.start_from);
+            if (!restored) return Error{options.start_from_file + ": " + restored.error().message};
+        }
+        parts->seed_time = seeding.seconds();
+        parts->show_frame();
+        parts->look_at_state();
+        return DepthRun(std::move(parts));
+    });
+}
+
+bool DepthRun::advance() {
+    return parts_->threads.execute([&] { return parts_->advance(); });
+}
+
+RunResult DepthRun::finish() {
+    return parts_->threads.execute([&] { return parts_->finish(); });
+}
+
+Result<RunResult> run_depth_averaged(const scene::Scene& scene, const RunOptions& options, Inside inside) {
+    const Threads threads(scene.spec.solver.thread_count);
+    return threads.execute([&]() -> Result<RunResult> {
+        TALUS_ASSIGN(DepthRun run, DepthRun::start(scene, options, inside));
+        while (run.advance()) {
+        }
+        return run.finish();
     });
 }
 

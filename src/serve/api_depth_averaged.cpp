@@ -1,16 +1,11 @@
 #include <utility>
 
-#include <fmt/format.h>
-
-#include "core/try.hpp"
 #include "serve/api.hpp"
 #include "session/json_text.hpp"
-#include "twin/json_keys.hpp"
 
 namespace talus::serve {
 namespace {
 
-using nlohmann::json;
 using Run = std::shared_ptr<const twin::DepthAveragedRun>;
 
 /// Asks about the result of the scenario of a request between two steps, and does the work on the worker's thread. No
@@ -22,13 +17,7 @@ void take(Session& session, const DepthAveraged& model, const Request& request, 
             const auto index = all.find(name);
             if (!index) return respond(no_scenario(name));
             Run run = model.result(*index);
-            if (!run) {
-                const json status = model.describe(*index);
-                const std::string why = status["message"].get<std::string>();
-                return respond(error_response(
-                    404, fmt::format("scenario {} has no result of the depth-averaged model: {}", name,
-                                     why.empty() ? "it is " + status["state"].get<std::string>() : why)));
-            }
+            if (!run) return respond(error_response(404, model.why_none(*index)));
             session.worker().post([respond, work = question(all.at(*index), std::move(run))] { respond(work()); });
         });
 }
@@ -59,22 +48,13 @@ void comparison(Session& session, const DepthAveraged& model, const Request& req
     });
 }
 
-/// What `{"on": true}` asks for.
-Result<bool> read_switch(const std::string& body) {
-    TALUS_ASSIGN(const auto wanted, parse_json(body));
-    const auto on = wanted.is_object() ? wanted.find("on") : wanted.end();
-    if (on == wanted.end() || !on->is_boolean()) return Error{"the body is an object with on, true or false"};
-    TALUS_TRY(twin::check_keys(wanted, {"on"}));
-    return on->get<bool>();
-}
-
 void turn(Session& session, DepthAveraged& model, const Request& request, const Respond& respond) {
     change(session, request, respond, [&](const std::string&) {
-        const Result<bool> on = read_switch(request.body);
+        const auto wanted = parse_json(request.body);
+        const Result<bool> on = wanted ? session::read_switch(*wanted) : wanted.error();
         if (!on) return respond(error_response(400, on.error().message));
         model.turn(*on);
-        respond(json_response(
-            200, {{"done", fmt::format("depth-averaged model {}", *on ? "on" : "off")}, {"created", nullptr}}));
+        respond(json_response(200, session::switched(*on)));
     });
 }
 

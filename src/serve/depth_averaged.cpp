@@ -32,160 +32,86 @@ void DepthAveraged::close() {
     worker_.reset();
 }
 
-const char* DepthAveraged::name_of(State state) {
-    switch (state) {
-        case State::waiting:
-            return "waiting";
-        case State::running:
-            return "running";
-        case State::done:
-            return "done";
-        case State::refused:
-            return "refused";
-        case State::failed:
-            return "failed";
-        case State::off:
-            break;
-    }
-    return "off";
-}
-
-json DepthAveraged::describe_now(int scenario) const {
-    const Slot& one = slot(scenario);
-    return {{"scenario", Scenarios::name_of(scenario)},
-            {"state", name_of(one.state)},
-            {"message", one.message},
-            {"share", one.state == State::running ? json(one.share) : json()},
-            {"result", one.made ? one.made->to_json() : json()}};
-}
-
 json DepthAveraged::describe(int scenario) const {
     const std::lock_guard lock(mutex_);
-    return describe_now(scenario);
+    return results_.describe(scenario);
 }
 
 std::shared_ptr<const twin::DepthAveragedRun> DepthAveraged::result(int scenario) const {
     const std::lock_guard lock(mutex_);
-    return slot(scenario).made;
+    return results_.result(scenario);
 }
 
+std::string DepthAveraged::why_none(int scenario) const {
+    const std::lock_guard lock(mutex_);
+    return results_.why_none(scenario);
+}
+
+/// Under the lock.
 void DepthAveraged::tell(int scenario) {
     told_ = Clock::now();
-    if (!closed_) session_.depth_averaged(scenario, describe_now(scenario));
+    if (!closed_) session_.depth_averaged(scenario, results_.describe(scenario));
 }
 
 void DepthAveraged::turn(bool on) {
     {
         const std::lock_guard lock(mutex_);
-        if (closed_ || on_ == on) return;
-        on_ = on;
-        if (!on) {
-            for (int i = 0; i < Scenarios::max_count; ++i) {
-                if (slot(i).state == State::off) continue;
-                drop(i);
-                tell(i);
-            }
-        }
+        if (closed_) return;
+        for (const int scenario : results_.turn(on)) tell(scenario);
+        if (!on) stop_ = true;
     }
     look_again();
-}
-
-/// Under the lock.
-void DepthAveraged::drop(int scenario) {
-    if (running_ == scenario) stop_ = true;
-    slot(scenario) = {};
 }
 
 /// Under the lock the session's loop exists: close() comes before its end.
 void DepthAveraged::look_again() {
     const std::lock_guard lock(mutex_);
-    if (closed_ || !on_) return;
+    if (closed_ || !results_.on()) return;
     session_.loop().post([this](Scenarios& all) { look(all); });
 }
 
 void DepthAveraged::look(Scenarios& all) {
     const std::lock_guard lock(mutex_);
-    if (closed_ || !on_) return;
-    for (int i = 0; i < Scenarios::max_count; ++i) {
-        if (!all.find(Scenarios::name_of(i))) {
-            drop(i);
-            continue;
-        }
-        const twin::Scenario& scenario = all.at(i);
-        std::string key = scenario.setup_key();
-        if (slot(i).state != State::off && slot(i).key == key) continue;
-        drop(i);
-        Slot& fresh = slot(i);
-        fresh.state = State::waiting;
-        fresh.key = std::move(key);
-        fresh.asked = ++asked_;
-        fresh.scene = scenario.for_depth_averaged();
+    if (closed_) return;
+    for (const int scenario : results_.look(all)) {
         worker_->post([this] { run_next(); });
-        tell(i);
+        tell(scenario);
     }
-}
-
-/// The scenario that was asked about last; -1: none waits. Under the lock.
-int DepthAveraged::next() const {
-    int newest = -1;
-    for (int i = 0; i < Scenarios::max_count; ++i) {
-        if (slot(i).state == State::waiting && (newest < 0 || slot(i).asked > slot(newest).asked)) newest = i;
-    }
-    return newest;
 }
 
 void DepthAveraged::run_next() {
     std::unique_lock lock(mutex_);
-    running_ = next();
-    if (closed_ || running_ < 0) return;  // the question has been withdrawn
-    const int scenario = running_;
+    if (closed_) return;
+    const auto task = results_.begin();
+    if (!task) return;  // the question has been withdrawn
     stop_ = false;
-    Slot& one = slot(scenario);
-    one.state = State::running;
-    const std::uint64_t asked = one.asked;
-    const Work scene = std::move(one.scene);
-    tell(scenario);
+    tell(task->scenario);
     lock.unlock();
-    compute(scenario, asked, scene);
+    Results::Outcome outcome = compute(*task);
     lock.lock();
-    running_ = -1;
+    if (closed_ || !results_.wants(*task)) return;  // it is about another setup by now
+    results_.finish(*task, std::move(outcome));
+    tell(task->scenario);
 }
 
-void DepthAveraged::compute(int scenario, std::uint64_t asked, const Work& work) {
-    State state = State::failed;
-    std::string message;
-    std::shared_ptr<const twin::DepthAveragedRun> made;
+DepthAveraged::Results::Outcome DepthAveraged::compute(const Results::Task& task) {
     try {
-        if (const Result<scene::Scene> scene = work(); !scene) {
-            state = State::refused;
-            message = scene.error().message;
-        } else {
-            auto run =
-                twin::run_depth_averaged(*scene, stop_, [&](double share) { take_share(scenario, asked, share); });
-            if (!run) {
-                message = run.error().message;
-            } else {
-                state = State::done;
-                made = std::make_shared<const twin::DepthAveragedRun>(std::move(*run));
-            }
-        }
+        const Result<scene::Scene> scene = task.scene();
+        if (!scene) return {.refused = scene.error().message};
+        auto run = twin::run_depth_averaged(*scene, stop_, [&](double share) { take_share(task, share); });
+        if (!run) return {.failed = run.error().message};
+        return {std::make_shared<const twin::DepthAveragedRun>(std::move(*run))};
     } catch (const std::exception& error) {  // running out of memory here must not end the live run
-        message = fmt::format("The depth-averaged model ended unexpectedly: {}.", error.what());
+        return {.failed = fmt::format("The depth-averaged model ended unexpectedly: {}.", error.what())};
     }
-    const std::lock_guard lock(mutex_);
-    Slot& one = slot(scenario);
-    if (one.asked != asked || closed_) return;  // it is about another setup by now
-    one.state = state;
-    one.message = std::move(message);
-    one.made = std::move(made);
-    tell(scenario);
 }
 
-void DepthAveraged::take_share(int scenario, std::uint64_t asked, double share) {
+void DepthAveraged::take_share(const Results::Task& task, double share) {
     const std::lock_guard lock(mutex_);
-    if (slot(scenario).asked != asked || Clock::now() - told_ < tell_share_every) return;
-    slot(scenario).share = share;
-    tell(scenario);
+    if (!results_.wants(task)) stop_ = true;
+    if (stop_ || Clock::now() - told_ < tell_share_every) return;
+    results_.take_share(task, share);
+    tell(task.scenario);
 }
 
 }  // namespace talus::serve

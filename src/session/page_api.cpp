@@ -95,6 +95,15 @@ PageAnswer PageApi::get(std::string_view path, const Arguments& query, const Now
     const std::vector<std::string> parts = parts_of(path);
     if (parts.size() < 4 || parts[0] != "api" || parts[1] != "scenarios") return not_here("GET", path);
     if (parts[3] == "exports" && parts.size() <= 5) return files(parts[2], parts.size() == 5 ? parts[4] : "");
+    if (parts[3] == "depth_averaged") {
+        if (parts.size() == 6 && parts[4] == "layers") {
+            if (auto wrong = unknown_key(query, {"time_s"})) return *wrong;
+            return to_answer(session_.depth_averaged(parts[2], "layers/" + parts[5], query));
+        }
+        if (parts.size() > 5 || (parts.size() == 5 && parts[4] != "comparison")) return not_here("GET", path);
+        if (auto wrong = unknown_key(query, {})) return *wrong;
+        return to_answer(session_.depth_averaged(parts[2], parts.size() == 5 ? parts[4] : ""));
+    }
     Arguments arguments = query;
     const Question* question = question_of(parts, arguments);
     if (question == nullptr) return not_here("GET", path);
@@ -138,6 +147,7 @@ PageAnswer PageApi::change(const std::string& method, std::string_view path, con
     std::optional<Reply> answer;
     const Answered answered = [&](const Reply& reply) { answer = reply; };
     if (method == "POST" && path == "/api/control") return control(body, person, now);
+    if (method == "POST" && path == "/api/depth_averaged") return to_answer(session_.turn_depth_averaged(person, body));
     if (method == "POST" && of_scenarios && parts.size() == 2) {
         session_.copy(person, body, answered);
     } else if (method == "DELETE" && of_scenarios && parts.size() == 3) {

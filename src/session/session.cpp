@@ -97,6 +97,30 @@ Reply Session::ask(const std::string& scenario, const std::string& question, con
     return session::ask(*scenarios_, scenario, *found, arguments)();
 }
 
+Reply Session::turn_depth_averaged(const std::string& id, const json& wanted) {
+    if (const auto by = actor(id); !by) return refusal(Outcome::not_now, by.error().message);
+    const Result<bool> on = read_switch(wanted);
+    if (!on) return refusal(Outcome::wrong, on.error().message);
+    depth_averaged_.turn(*on, *scenarios_);
+    return reply(switched(*on));
+}
+
+Reply Session::depth_averaged(const std::string& scenario, const std::string& question, const Arguments& arguments) {
+    const auto index = scenarios_->find(scenario);
+    if (!index) return no_scenario(scenario);
+    const DepthAveragedResults& results = depth_averaged_.results();
+    if (question.empty()) return reply(results.describe(*index));
+    const auto time = number_of(arguments, "time_s", 0, 1e9);
+    if (!time) return refusal(Outcome::wrong, time.error().message);
+    const DepthAveragedResults::Run run = results.result(*index);
+    if (!run) return refusal(Outcome::unknown, results.why_none(*index));
+    if (question == "comparison") return reply(scenarios_->at(*index).compared_with(run)());
+    constexpr std::string_view layers = "layers/";
+    const auto grid = run->layer(question.substr(std::min(layers.size(), question.size())), *time);
+    if (!grid) return refusal(Outcome::unknown, grid.error().message);
+    return {Outcome::done, std::make_shared<const std::string>(twin::encode_grid(*grid)), true};
+}
+
 std::optional<std::vector<twin::RunFile>> Session::files(const std::string& scenario) const {
     const auto index = scenarios_->find(scenario);
     if (!index) return {};
@@ -115,8 +139,10 @@ std::optional<Clock::time_point> Session::advance(const Now& now, Clock::duratio
             then();
         }
         const auto next = scenarios_->work(now);
+        if (std::exchange(setups_changed_, false)) depth_averaged_.look(*scenarios_);
+        const bool computes = depth_averaged_.step(now());
         const Clock::time_point ended = now();
-        const bool more = !work_.empty() || (next && *next <= ended);
+        const bool more = computes || !work_.empty() || (next && *next <= ended);
         if (more && ended - begin < budget) continue;
         if (more) return ended;
         if (!room_->waiting()) return next;
@@ -143,6 +169,12 @@ void Session::state(int scenario, json state) {
 
 void Session::setup(int scenario, json setup) {
     room_->keep(Kept::setup, scenario, message_text(Kept::setup, std::move(setup)));
+    setups_changed_ = true;
+}
+
+void Session::scenarios(std::vector<std::string> names) {
+    room_->scenarios(names);
+    setups_changed_ = true;
 }
 
 void Session::done(int scenario, const std::string& by, const std::string& sentence) {

@@ -14,6 +14,7 @@
 
 #include "core/hash.hpp"
 #include "core/result.hpp"
+#include "session/depth_averaged.hpp"
 #include "session/requests.hpp"
 #include "session/room.hpp"
 #include "session/scenarios.hpp"
@@ -51,6 +52,11 @@ class Session final : private Watcher {
     [[nodiscard]] Reply ask(const std::string& scenario, const std::string& question, const Arguments& arguments = {});
     /// As twin::Scenario::page_files; nothing: there is no such scenario.
     [[nodiscard]] std::optional<std::vector<twin::RunFile>> files(const std::string& scenario) const;
+    /// `{"on": true}`: the depth-averaged model beside the runs.
+    [[nodiscard]] Reply turn_depth_averaged(const std::string& id, const nlohmann::json& wanted);
+    /// What of it: nothing (its state), "comparison", or "layers/" and a name, at a time.
+    [[nodiscard]] Reply depth_averaged(const std::string& scenario, const std::string& question,
+                                       const Arguments& arguments = {});
     [[nodiscard]] Reply scene() const { return reply(scenarios_->at(0).scene_json()); }
     /// Of the first scenario's state now, as in its journal.
     [[nodiscard]] std::string hash() const { return to_hex(scenarios_->at(0).hash()); }
@@ -76,13 +82,17 @@ class Session final : private Watcher {
     void state(int scenario, nlohmann::json state) override;
     void setup(int scenario, nlohmann::json setup) override;
     void done(int scenario, const std::string& by, const std::string& sentence) override;
-    void scenarios(std::vector<std::string> names) override { room_->scenarios(names); }
+    void scenarios(std::vector<std::string> names) override;
     void alerts(int, RunAlerts) override {}
 
     std::unique_ptr<Room> room_;
     std::map<std::string, std::unique_ptr<Guest>> guests_;  // by id
     std::deque<std::pair<Work, std::function<void()>>> work_;
     std::unique_ptr<Scenarios> scenarios_;
+    DepthAveragedInTurns depth_averaged_{[this](int scenario, nlohmann::json status) {
+        room_->keep(Kept::depth_averaged, scenario, message_text(Kept::depth_averaged, std::move(status)));
+    }};
+    bool setups_changed_ = false;
 };
 
 }  // namespace talus::session

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <ctime>
 #include <limits>
+#include <optional>
 #include <utility>
 
 #include <fmt/format.h>
@@ -13,7 +14,7 @@
 #include "core/number_or_null.hpp"
 #include "core/try.hpp"
 #include "observe/map_names.hpp"
-#include "run/run_scene.hpp"
+#include "run/depth_run.hpp"
 #include "run/verdict.hpp"
 #include "run/words.hpp"
 #include "scene/grid_cell.hpp"
@@ -26,10 +27,10 @@ using nlohmann::json;
 
 constexpr double most_moments = 150, shortest_interval = 0.5;  // s
 
-/// Of this thread, s: a run has one.
+/// Of this thread, s: a run has one. A page knows the clock on the wall alone.
 double processor_time() {
     timespec now{};
-    clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
+    if (clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now) != 0) clock_gettime(CLOCK_MONOTONIC, &now);
     return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
 }
 
@@ -145,30 +146,75 @@ Result<scene::Scene> for_depth_averaged(scene::Scene scene, const DepthAveragedL
     return scene;
 }
 
+struct DepthAveragedSteps::Parts {
+    Parts(const scene::Scene& scene_, const DepthAveragedLimits& limits_)
+        : scene(scene_), limits(limits_), moments(limits_.depth_bytes) {
+        options.on_frame = [this](const run::Frame& frame) { moments.add(frame); };
+        options.on_grid_step = [this](const depth::Solver& solver) { time = solver.time(); };
+    }
+    /// Counts the time that `work` takes.
+    template <class Action>
+    decltype(auto) measure(Action&& action) {
+        const struct Counted {
+            double& used;
+            double begun = processor_time();
+            ~Counted() { used += processor_time() - begun; }
+        } counted{used};
+        return action();
+    }
+
+    const scene::Scene& scene;
+    DepthAveragedLimits limits;
+    Moments moments;
+    run::RunOptions options;
+    double time = 0, used = 0;  ///< s; of processor time
+    bool cut = false;           ///< it took too long
+    std::optional<run::DepthRun> run;
+};
+
+DepthAveragedSteps::DepthAveragedSteps(std::unique_ptr<Parts> parts) : parts_(std::move(parts)) {}
+DepthAveragedSteps::DepthAveragedSteps(DepthAveragedSteps&&) noexcept = default;
+DepthAveragedSteps& DepthAveragedSteps::operator=(DepthAveragedSteps&&) noexcept = default;
+DepthAveragedSteps::~DepthAveragedSteps() = default;
+
+Result<DepthAveragedSteps> DepthAveragedSteps::start(const scene::Scene& scene, const DepthAveragedLimits& limits) {
+    auto parts = std::make_unique<Parts>(scene, limits);
+    TALUS_ASSIGN(auto run, parts->measure([&] { return run::DepthRun::start(scene, parts->options); }));
+    parts->run = std::move(run);
+    return DepthAveragedSteps(std::move(parts));
+}
+
+bool DepthAveragedSteps::advance() {
+    parts_->cut = parts_->used > parts_->limits.longest;
+    return !parts_->cut && parts_->measure([&] { return parts_->run->advance(); });
+}
+
+double DepthAveragedSteps::share() const {
+    return parts_->time / parts_->scene.spec.solver.end_time;
+}
+
+DepthAveragedRun DepthAveragedSteps::finish() {
+    DepthAveragedRun made;
+    made.result = parts_->measure([&] { return parts_->run->finish(); });
+    made.moments = parts_->moments.take();
+    for (const std::string& note : parts_->scene.notes) made.notes.push_back(run::capitalised(note) + ".");
+    made.processor_time = parts_->used;
+    if (parts_->cut) {
+        made.result.stop_reason = fmt::format(
+            "ended after {:.0f} s of computing, the most that it may take beside a live run, at t = {:.4g} s",
+            parts_->limits.longest, made.result.simulated_time);
+    }
+    return made;
+}
+
 Result<DepthAveragedRun> run_depth_averaged(const scene::Scene& scene, const std::atomic<bool>& stop,
                                             const std::function<void(double share)>& progress,
                                             const DepthAveragedLimits& limits) {
-    const double begun = processor_time();
-    std::atomic<bool> end = false;
-    Moments moments(limits.depth_bytes);
-    run::RunOptions options;
-    options.stop_requested = &end;
-    options.on_frame = [&](const run::Frame& frame) { moments.add(frame); };
-    options.on_grid_step = [&](const depth::Solver& solver) {
-        end = stop || processor_time() - begun > limits.longest;
-        if (progress) progress(solver.time() / scene.spec.solver.end_time);
-    };
-    DepthAveragedRun run;
-    TALUS_ASSIGN(run.result, run::run_scene(scene, options));
-    run.moments = moments.take();
-    for (const std::string& note : scene.notes) run.notes.push_back(run::capitalised(note) + ".");
-    run.processor_time = processor_time() - begun;
-    if (run.result.status == run::RunStatus::interrupted && !stop) {
-        run.result.stop_reason = fmt::format(
-            "ended after {:.0f} s of computing, the most that it may take beside a live run, at t = {:.4g} s",
-            limits.longest, run.result.simulated_time);
+    TALUS_ASSIGN(DepthAveragedSteps steps, DepthAveragedSteps::start(scene, limits));
+    while (!stop && steps.advance()) {
+        if (progress) progress(steps.share());
     }
-    return run;
+    return steps.finish();
 }
 
 }  // namespace talus::twin

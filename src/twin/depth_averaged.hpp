@@ -3,6 +3,7 @@
 #include <atomic>
 #include <cstddef>
 #include <functional>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -49,6 +50,29 @@ struct DepthAveragedRun {
 /// A scene as this model runs it beside a live run, on one thread. Errors: a sentence that names what the model does
 /// not have.
 [[nodiscard]] Result<scene::Scene> for_depth_averaged(scene::Scene scene, const DepthAveragedLimits& limits = {});
+
+/// A run of a scene of for_depth_averaged(), step by step, for who has one thread for it and the live run.
+class DepthAveragedSteps {
+  public:
+    /// `scene` must live as long. Errors: as of run::run_scene().
+    [[nodiscard]] static Result<DepthAveragedSteps> start(const scene::Scene& scene,
+                                                          const DepthAveragedLimits& limits = {});
+    DepthAveragedSteps(DepthAveragedSteps&&) noexcept;
+    DepthAveragedSteps& operator=(DepthAveragedSteps&&) noexcept;
+    ~DepthAveragedSteps();
+
+    /// A step. False: it is over.
+    bool advance();
+    /// Of the time, from 0 to 1.
+    [[nodiscard]] double share() const;
+    /// Once, at its end or before.
+    [[nodiscard]] DepthAveragedRun finish();
+
+  private:
+    struct Parts;
+    explicit DepthAveragedSteps(std::unique_ptr<Parts> parts);
+    std::unique_ptr<Parts> parts_;
+};
 
 /// Runs a scene of for_depth_averaged(), until `stop` or to its end. `progress` is called after every step with the
 /// share of the time that has passed. Errors: as of run::run_scene().

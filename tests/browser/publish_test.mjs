@@ -123,6 +123,16 @@ async function testEngine(opened, address) {
     await until(() => page.locator(".comparison thead th").allTextContents(), (heads) => /^A 4\.0.s$/.test(heads[1] ?? "") && /^B 4\.0.s$/.test(heads[2] ?? ""), "both in the table");
     await page.screenshot({ path: join(output, "engine.png") });
   });
+  await check("engine: the depth-averaged model computes the same setup, and its map is drawn", async () => {
+    await row("A").click();
+    await page.getByLabel("Depth-averaged model").check();
+    await until(() => page.getByLabel("Map layer on the ground").inputValue(), (layer) => layer === "depth_averaged/peak_depth", "its map");
+    await until(() => page.locator("main.middle").innerText(), (text) => /depth-averaged/i.test(text), "its legend");
+    await page.click("[data-tab=compare]");
+    await until(() => page.locator(".tab-panels").innerText(), (text) => /Depth-averaged/i.test(text), "figures of both");
+    await page.screenshot({ path: join(output, "engine_depth_averaged.png") });
+    await page.getByLabel("Depth-averaged model").uncheck();
+  });
   let archive = Buffer.alloc(0);
   await check("engine: tables, maps and journal of the run are saved", async () => {
     await row("A").click();
