@@ -2,7 +2,7 @@
 # Installs the Debian or Ubuntu packages that are missing; needs neither network nor root when all are there.
 #   scripts/install_packages.sh build   what building and running needs
 #   scripts/install_packages.sh test    and what the tests need
-#   scripts/install_packages.sh publish   and emscripten, for the engine of a page
+#   scripts/install_packages.sh publish   and emscripten for the engine of a page, and Firefox
 #   scripts/install_packages.sh qgis    and QGIS, for the tests of its plugin
 set -euo pipefail
 
@@ -14,7 +14,11 @@ node_version=$(node --version 2>/dev/null || echo v0)
 node_version=${node_version#v}
 if ((${node_version%%.*} < 18)); then packages+=(nodejs); fi
 command -v npm >/dev/null || packages+=(npm)
-if [[ ${1:-build} == publish ]]; then packages+=(emscripten); fi
+if [[ ${1:-build} == publish ]]; then
+    packages+=(emscripten)
+    # Ubuntu has Firefox as a snap alone.
+    if [[ -n $(apt-cache show firefox-esr 2>/dev/null) ]]; then packages+=(firefox-esr xvfb libegl1 libgl1 libgl1-mesa-dri libpci3); fi
+fi
 if [[ ${1:-build} == qgis ]]; then packages+=(qgis python3-qgis python3-gdal python3-numpy); fi
 if [[ ${1:-build} == test ]]; then
     packages+=(libbenchmark-dev clang-format clang-tidy python3 python3-gdal python3-numpy python3-pip mypy poppler-utils

@@ -64,12 +64,13 @@ install_browser_tests() {
 test_page_engine() {
     scripts/install_packages.sh publish
     install_browser_tests
+    apps/web_engine/build.sh build/web_engine # before the program, which carries it
     cmake --preset release
     cmake --build --preset release --target talus test_pack --parallel "$(nproc)"
-    apps/web_engine/build.sh build/web_engine
     (cd web && npm ci --no-audit --no-fund)
     npm ci --prefix web/engine_package/examples/cesium --ignore-scripts --no-audit --no-fund # 53 MB, for this test alone
     tests/web_engine/run.sh
+    run_tests release --tests-regex '^browser\.(publish|firefox_publish)$' --repeat until-pass:2
 }
 
 step "packages"

@@ -1,6 +1,7 @@
-// A published page in Firefox, through its own remote protocol (Marionette): it opens from disk, shows its picture and plays;
-// with an engine it computes a run to its end. Usage: node firefox_publish.mjs TWIN.html FOLDER; ends with 77 without Firefox.
-// It needs a display for WebGL, such as that of Xvfb. No test of the suite.
+// A published twin in Firefox, through its own remote protocol (Marionette): it opens from disk, shows its picture and plays;
+// with an engine it computes a run to its end. Usage: node firefox_publish.mjs OUTPUT_FOLDER TALUS [TWIN.html]; without TWIN a
+// short run of the built-in scene is published. Exit code 77: skipped, since Firefox is missing, or Xvfb where there is no display,
+// which WebGL needs.
 import { spawn, spawnSync } from "node:child_process";
 import { mkdirSync, mkdtempSync, rmSync, writeFileSync } from "node:fs";
 import { connect } from "node:net";
@@ -9,18 +10,38 @@ import { join, resolve } from "node:path";
 import { pathToFileURL } from "node:url";
 
 const firefox = process.env.TALUS_FIREFOX ?? "firefox-esr";
-if (spawnSync(firefox, ["--version"]).status !== 0) {
-  console.log(`skipped: ${firefox} is not there`);
+for (const program of process.env.DISPLAY ? [firefox] : [firefox, "Xvfb"]) {
+  if (spawnSync("which", [program]).status === 0) continue;
+  console.log(`SKIPPED browser.firefox_publish: ${program} is not there`);
   process.exit(77);
 }
-const [, , file, output] = process.argv;
+const [, , output, talus, given] = process.argv;
 mkdirSync(output, { recursive: true });
+const file = given ?? join(output, "twin.html");
+if (given === undefined) {
+  const small = ["-o", file, "--force", "--set", "solver.target_particle_count=500", "--set", "solver.end_time_s=4"];
+  const published = (...more) => spawnSync(talus, ["publish", ...small, ...more], { encoding: "utf8" });
+  const withEngine = published();
+  const made = /without the engine/.test(withEngine.stderr) ? published("--without-engine") : withEngine;
+  if (made.status !== 0) throw new Error(`talus publish: ${made.status}\n${made.stderr}`);
+}
+/** A display of its own, once it says its number. */
+async function display() {
+  if (process.env.DISPLAY) return { number: process.env.DISPLAY, end: () => undefined };
+  const server = spawn("Xvfb", ["-displayfd", "3", "-screen", "0", "1400x1000x24", "-nolisten", "tcp"], { stdio: ["ignore", "ignore", "ignore", "pipe"] });
+  const number = await new Promise((done, failed) => {
+    server.stdio[3].once("data", (text) => done(`:${String(text).trim()}`));
+    server.once("exit", (code) => failed(new Error(`Xvfb ended with ${code}`)));
+  });
+  return { number, end: () => server.kill() };
+}
+const screen = await display();
 const profile = mkdtempSync(join(tmpdir(), "talus-firefox-"));
 const port = 20_000 + (process.pid % 20_000);
 writeFileSync(join(profile, "user.js"), `user_pref("marionette.port", ${port});
 user_pref("webgl.force-enabled", true);
 `);
-const browser = spawn(firefox, [...(process.env.DISPLAY ? [] : ["--headless"]), "--no-remote", "--profile", profile, "--marionette"], { stdio: "ignore" });
+const browser = spawn(firefox, ["--no-remote", "--profile", profile, "--marionette"], { stdio: "ignore", env: { ...process.env, DISPLAY: screen.number } });
 
 /** The connection, once the browser listens. */
 async function open() {
@@ -99,6 +120,7 @@ try {
 } finally {
   browser.kill();
   await new Promise((done) => browser.once("exit", done));
+  screen.end();
   rmSync(profile, { recursive: true, force: true });
 }
 process.exit(status);
