@@ -38,7 +38,7 @@ What it contains is printed before it is written: check that you may pass the sc
   talus publish talus_out/my_scene -o twin.html     a result of talus run: the run is computed again, to the same hash
   talus publish my_scene.toml -o site --folder      a folder for a web server
 
-A run has as many frames as 4 MB take, 0.8 MB beside an engine, most of them while debris moves; the page draws the way
+A run has as many frames as 4 MB take, 0.72 MB beside an engine, most of them while debris moves; the page draws the way
 between two of them. --interval takes a fixed distance.
 
 Exit codes:

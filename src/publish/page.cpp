@@ -113,11 +113,12 @@ std::string text_of_bytes(std::string_view bytes) {
 }
 
 std::string one_file(const PageFiles& page, const Content& content) {
-    const std::string loader = inline_script(page.loader), style(page.style);
+    const std::string loader = inline_script(page.loader);
     const std::string scripts = fmt::format("{} {}", fingerprint(loader), fingerprint(page.script));
-    std::string html = head(content, scripts, fingerprint(style), "'none'");
-    html += fmt::format("<style>{}</style>\n{}", style, opening);
+    std::string html = head(content, scripts, fingerprint(page.style), "'none'");
+    html += opening;
     html += block("about", json_block(content.about));
+    html += block("style", text_of_bytes(deflated(page.style)));
     html += block("script", text_of_bytes(deflated(page.script)));
     html += block("tape", text_of_bytes(content.tape));
     if (content.engine) {

@@ -169,10 +169,7 @@ void Plot::draw_axes(Svg& svg) const {
 void Plot::draw_curve(Svg& svg, const Curve& curve) const {
     using Shape = Curve::Shape;
     const std::vector<double>&x = curve.x, &y = curve.y;
-    const auto place = [&](double at, double value) {
-        return fmt::format("{} {}", coordinate(px(at)), coordinate(py(value)));
-    };
-    std::string path;
+    PathData path;
     switch (curve.shape) {
         case Shape::vertical:
             for (const double at : x) svg.line(curve.style, px(at), top, px(at), top + height);
@@ -182,10 +179,12 @@ void Plot::draw_curve(Svg& svg, const Curve& curve) const {
             return;
         case Shape::band: {
             const std::size_t n = std::min({x.size(), y.size(), curve.low.size()});
-            for (std::size_t i = 0; i < n; ++i) path += (i == 0 ? "M" : "L") + place(x[i], y[i]);
-            for (std::size_t i = n; i-- > 0;) path += "L" + place(x[i], curve.low[i]);
-            if (n > 1) svg.path(curve.style, path + "Z");
-            return;
+            if (n < 2) return;
+            path.move_to(px(x[0]), py(y[0]));
+            for (std::size_t i = 1; i < n; ++i) path.line_to(px(x[i]), py(y[i]));
+            for (std::size_t i = n; i-- > 0;) path.line_to(px(x[i]), py(curve.low[i]));
+            path.close();
+            return svg.path(curve.style, path.take());
         }
         default:
             break;
@@ -206,11 +205,11 @@ void Plot::draw_curve(Svg& svg, const Curve& curve) const {
         } else if (curve.shape == Shape::bars) {
             if (y[i] > 0) svg.rect(curve.style, at_x + 0.75, at_y, px(x[i] + curve.size) - at_x - 1.5, py(0) - at_y);
         } else {
-            path += (drawing ? "L" : "M") + place(x[i], y[i]);
+            drawing ? path.line_to(at_x, at_y) : path.move_to(at_x, at_y);
             drawing = true;
         }
     }
-    if (!path.empty()) svg.path(curve.style, path);
+    if (!path.empty()) svg.path(curve.style, path.take());
 }
 
 void Plot::draw_key(Svg& svg) const {

@@ -17,19 +17,28 @@
 namespace talus::report {
 namespace {
 
-std::string path_data(const MapFrame& frame, const std::vector<PlanPoint>& points) {
-    std::string d;
-    for (const PlanPoint& p : points) {
-        d += fmt::format("{}{} {}", d.empty() ? "M" : "L", coordinate(std::round(frame.x(p.x) * 10) / 10),
-                         coordinate(std::round(frame.y(p.y) * 10) / 10));
+void add_points(PathData& data, const MapFrame& frame, const std::vector<PlanPoint>& points) {
+    for (std::size_t k = 0; k < points.size(); ++k) {
+        const double x = frame.x(points[k].x), y = frame.y(points[k].y);
+        k == 0 ? data.move_to(x, y) : data.line_to(x, y);
     }
-    return d;
+}
+
+std::string path_data(const MapFrame& frame, const std::vector<PlanPoint>& points) {
+    PathData data;
+    add_points(data, frame, points);
+    return data.take();
 }
 
 std::string polygon_data(const MapFrame& frame, const Polygon& polygon) {
-    std::string d = path_data(frame, polygon.outer) + "Z";
-    for (const Ring& hole : polygon.holes) d += path_data(frame, hole) + "Z";
-    return d;
+    PathData data;
+    const auto add_ring = [&](const Ring& ring) {
+        add_points(data, frame, ring);
+        data.close();
+    };
+    add_ring(polygon.outer);
+    for (const Ring& hole : polygon.holes) add_ring(hole);
+    return data.take();
 }
 
 /// Decimals that tell multiples of a step apart, whose digits are 1, 2, 2.5 or 5.

@@ -1,5 +1,9 @@
 #include "report/svg.hpp"
 
+#include <cmath>
+#include <cstdlib>
+#include <utility>
+
 #include <fmt/format.h>
 
 namespace talus::report {
@@ -58,6 +62,53 @@ void Svg::turned_text(std::string_view css_class, double x, double y, double deg
                       std::string_view anchor, std::string_view dy) {
     const std::string place = fmt::format("{} rotate({})", translation(x, y), coordinate(degrees));
     add("text", {{"class", css_class}, {"transform", place}, {"text-anchor", anchor}, {"dy", dy}}, words);
+}
+
+void PathData::add_number(long tenths) {
+    // A sign or a command before a number needs no space.
+    const char last = text_.empty() ? '\0' : text_.back();
+    if (tenths >= 0 && (last == '.' || (last >= '0' && last <= '9'))) text_ += ' ';
+    if (tenths < 0) text_ += '-';
+    const long size = std::abs(tenths);
+    if (size >= 10 || size == 0) text_ += std::to_string(size / 10);
+    if (size % 10 != 0) text_.append(".").append(std::to_string(size % 10));
+}
+
+void PathData::move_to(double x, double y) {
+    flush();
+    from_ = to_ = first_ = {std::lround(10 * x), std::lround(10 * y)};
+    text_ += command_ = 'M';
+    add_number(to_.x);
+    add_number(to_.y);
+}
+
+void PathData::line_to(double x, double y) {
+    const Place next{std::lround(10 * x), std::lround(10 * y)};
+    const long ax = to_.x - from_.x, ay = to_.y - from_.y, bx = next.x - to_.x, by = next.y - to_.y;
+    const bool straight_on = ax * by == ay * bx && ax * bx + ay * by >= 0;
+    if (!straight_on) flush();
+    to_ = next;
+}
+
+void PathData::flush() {
+    const long dx = to_.x - from_.x, dy = to_.y - from_.y;
+    if (dx == 0 && dy == 0) return;
+    const char command = dy == 0 ? 'h' : dx == 0 ? 'v' : 'l';
+    if (command != command_) text_ += command_ = command;
+    if (dx != 0) add_number(dx);
+    if (dy != 0) add_number(dy);
+    from_ = to_;
+}
+
+void PathData::close() {
+    flush();
+    text_ += command_ = 'Z';
+    from_ = to_ = first_;
+}
+
+std::string PathData::take() {
+    flush();
+    return std::move(text_);
 }
 
 std::string diamond(double x, double y) {

@@ -47,6 +47,31 @@ class Svg {
     std::string text_;
 };
 
+/// The data of a path of straight lines, in tenths. Points are written from the one before, and points on a straight
+/// line between their neighbours are left out: a third of the text, and the same picture.
+class PathData {
+  public:
+    void move_to(double x, double y);
+    void line_to(double x, double y);
+    /// Back to where it moved to last.
+    void close();
+    [[nodiscard]] bool empty() const { return text_.empty(); }
+    /// The whole text.
+    [[nodiscard]] std::string take();
+
+  private:
+    /// In tenths.
+    struct Place {
+        long x = 0, y = 0;
+    };
+    void flush();
+    void add_number(long tenths);
+
+    std::string text_;
+    Place from_, to_, first_;  ///< to_: where a line is being drawn to from from_
+    char command_ = 0;         ///< the last one
+};
+
 /// The path of a diamond, or of a disc, around a place.
 [[nodiscard]] std::string diamond(double x, double y);
 [[nodiscard]] std::string disc(double x, double y);

@@ -18,7 +18,7 @@ inline constexpr std::size_t largest_twin = 150'000'000;
 
 /// Of all frames of a scenario beside an engine, so that the file stays small enough to send: who wants to look closer
 /// runs it again.
-inline constexpr std::size_t frame_bytes_with_engine = 800'000;
+inline constexpr std::size_t frame_bytes_with_engine = 720'000;
 
 /// A scene, or a session of it, to be published.
 struct ToPublish {

@@ -150,7 +150,7 @@ TEST(Pack, names_both_versions) {
     bytes[8] = 99;
     EXPECT_EQ(error_of(read_text(bytes)),
               "twin.talus is of version 99 of packed scenes, and this program reads version "
-              "2: publish the scene again");
+              "3: publish the scene again");
 }
 
 TEST(Pack, refuses_claims_of_size_before_it_allocates) {

@@ -59,7 +59,7 @@ TEST(CompactGrid, rounds_values_of_a_map_and_lays_their_bytes_in_planes) {
         if (std::isnan(values[i])) {
             EXPECT_TRUE(std::isnan(value));
         } else if (i + 1 < values.size() && std::isfinite(values[i])) {
-            EXPECT_NEAR(value, values[i], std::abs(values[i]) / 131'072);
+            EXPECT_NEAR(value, values[i], std::abs(values[i]) / 65'536);
         }
     }
 }

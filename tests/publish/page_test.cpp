@@ -32,7 +32,9 @@ TEST(PublishedPage, holds_all_and_allows_no_network) {
     EXPECT_THAT(html, HasSubstr("connect-src 'none'"));
     EXPECT_THAT(html,
                 HasSubstr("<script type=\"text/plain\" id=\"tape\">" + publish::text_of_bytes("TLST") + "</script>"));
-    EXPECT_THAT(html, HasSubstr("<style>p { color: red }</style>"));
+    EXPECT_THAT(html, HasSubstr("id=\"style\">"));
+    // printf '%s' 'p { color: red }' | openssl dgst -sha256 -binary | base64
+    EXPECT_THAT(html, HasSubstr("style-src 'sha256-ngewhhP73WDIbgwseeu52VAAJgKdGUsu1IUQQsAm8m4=';"));
     for (const char* loads : {" src=", "href=", "wasm-unsafe-eval", "unsafe-inline"})
         EXPECT_THAT(html, Not(HasSubstr(loads)));
 }
@@ -84,7 +86,7 @@ TEST(PublishedPage, a_title_is_text) {
     EXPECT_THAT(html, HasSubstr("<title>&lt;/title&gt;&lt;/script&gt;&lt;img src=x onerror=alert(1)&gt; &amp; "
                                 "&quot;Co&quot; · talus</title>"));
     EXPECT_THAT(html, Not(HasSubstr("<img")));
-    EXPECT_EQ(count(html, "</script>"), 4U);  // of about, script, tape and the loader
+    EXPECT_EQ(count(html, "</script>"), 5U);  // of about, style, script, tape and the loader
 }
 
 TEST(PublishedPage, an_engine_comes_with_its_scene_and_may_be_compiled) {

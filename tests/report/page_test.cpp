@@ -55,7 +55,26 @@ TEST(ReportPlot, lines_leave_gaps_where_there_is_no_value) {
     plot.line(x, y, "series");
     report::Svg svg;
     plot.draw(svg);
-    EXPECT_TRUE(has(svg.str(), "d=\"M0 100L25 0M75 0L100 100\""));
+    EXPECT_TRUE(has(svg.str(), "d=\"M0 100l25-100M75 0l25 100\""));
+}
+
+TEST(ReportPath, has_points_from_the_one_before_and_none_on_a_straight_line) {
+    report::PathData path;
+    EXPECT_TRUE(path.empty());
+    path.move_to(1, 2.5);
+    path.line_to(2, 2.5);
+    path.line_to(4, 2.5);    // straight on
+    path.line_to(4, 2.52);   // less than a tenth
+    path.line_to(3.5, 2.5);  // back
+    path.line_to(3.5, -10);
+    path.line_to(3.6, -9.5);
+    path.line_to(3.8, -8.5);  // straight on
+    path.line_to(3.75, -8.25);
+    path.close();
+    path.move_to(0, -0.04);
+    path.line_to(0.3, 0);
+    path.move_to(7, 7);
+    EXPECT_EQ(path.take(), "M1 2.5h3-.5v-12.5l.3 1.5v.2ZM0 0h.3M7 7");
 }
 
 TEST(ReportChart, is_the_same_after_it_was_written_and_read) {

@@ -1,13 +1,19 @@
-// The first script of a published twin in one file: it inflates the page's own script, a quarter of its bytes, and runs it. The
-// policy of the file names both.
+// The first script of a published twin in one file: it inflates the page's own style and script, a quarter of their bytes, and
+// puts them in. The policy of the file names all three.
 import { inflatedBlock } from "./protocol/block";
+
+async function textOf(id: string): Promise<string> {
+  const text = await (await inflatedBlock(id))?.text();
+  if (!text) throw new Error(`the file holds no ${id}`);
+  return text;
+}
 
 async function load(): Promise<void> {
   try {
-    const script = document.createElement("script");
+    const [style, script] = [document.createElement("style"), document.createElement("script")];
+    [style.textContent, script.textContent] = await Promise.all([textOf("style"), textOf("script")]);
     script.type = "module";
-    script.textContent = (await (await inflatedBlock("script"))?.text()) ?? "";
-    if (script.textContent === "") throw new Error("the file holds no script");
+    document.head.append(style);
     document.body.append(script);
   } catch (error) {
     console.error(error);
