@@ -254,7 +254,7 @@ void add_publish(CLI::App& program, std::vector<Command>& commands) {
                   "publish the recorded run alone: nothing can be changed in the page");
     app->add_option(
            "--interval", publish->options.recording.frame_interval,
-           "s between frames; default: as many as 4 MB take (0.8 MB beside an engine), most while debris moves")
+           "s between frames; default: as many as 4 MB take (0.72 MB beside an engine), most while debris moves")
         ->type_name("S")
         ->check(CLI::Range(0.1, 3600.0));
     app->add_flag("--no-files", publish->no_files, "leave out report, tables and maps as files to download");
