@@ -37,6 +37,8 @@ double volume_of(const std::vector<terrain::Release>& releases) {
     return sum;
 }
 
+}  // namespace
+
 /// What a run of the model is made of.
 class GridRun {
   public:
@@ -290,8 +292,6 @@ class GridRun {
     std::optional<sim::Model> sliding_;  ///< what the clock's blocks slide by; made when it is asked
     sim::Ground sliding_ground_;
 };
-
-}  // namespace
 
 struct DepthRun::Parts {
     Parts(const scene::Scene& scene, const RunOptions& run_options, Inside inside)

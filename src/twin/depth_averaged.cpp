@@ -39,36 +39,6 @@ double cells_of(const scene::Scene& scene, double cell) {
     return e.width() * e.height() / (cell * cell);
 }
 
-/// Keeps depths over time within a number of bytes.
-class Moments {
-  public:
-    explicit Moments(std::size_t most_bytes) : most_bytes_(most_bytes) {}
-
-    void add(const run::Frame& frame) {
-        if (count_++ % every_ != 0) return;
-        kept_.push_back({frame.time, frame.debris.depth});
-        bytes_ += kept_.back().depth.values.size() * sizeof(float);
-        while (bytes_ > most_bytes_ && kept_.size() > 2) thin();
-    }
-    [[nodiscard]] std::vector<DepthAveragedRun::Moment> take() { return std::move(kept_); }
-
-  private:
-    void thin() {
-        every_ *= 2;
-        std::vector<DepthAveragedRun::Moment> some;
-        bytes_ = 0;
-        for (std::size_t k = 0; k < kept_.size(); k += 2) {
-            bytes_ += kept_[k].depth.values.size() * sizeof(float);
-            some.push_back(std::move(kept_[k]));
-        }
-        kept_ = std::move(some);
-    }
-
-    std::size_t most_bytes_, bytes_ = 0;
-    std::size_t count_ = 0, every_ = 1;
-    std::vector<DepthAveragedRun::Moment> kept_;
-};
-
 Grid<float> known_only(Grid<float> depth) {
     for (float& value : depth.values) {
         if (!(value > 0)) value = std::numeric_limits<float>::quiet_NaN();
@@ -145,6 +115,36 @@ Result<scene::Scene> for_depth_averaged(scene::Scene scene, const DepthAveragedL
     scene.flow_path_origin = scene::PathOrigin::file;
     return scene;
 }
+
+/// Keeps depths over time within a number of bytes.
+class Moments {
+  public:
+    explicit Moments(std::size_t most_bytes) : most_bytes_(most_bytes) {}
+
+    void add(const run::Frame& frame) {
+        if (count_++ % every_ != 0) return;
+        kept_.push_back({frame.time, frame.debris.depth});
+        bytes_ += kept_.back().depth.values.size() * sizeof(float);
+        while (bytes_ > most_bytes_ && kept_.size() > 2) thin();
+    }
+    [[nodiscard]] std::vector<DepthAveragedRun::Moment> take() { return std::move(kept_); }
+
+  private:
+    void thin() {
+        every_ *= 2;
+        std::vector<DepthAveragedRun::Moment> some;
+        bytes_ = 0;
+        for (std::size_t k = 0; k < kept_.size(); k += 2) {
+            bytes_ += kept_[k].depth.values.size() * sizeof(float);
+            some.push_back(std::move(kept_[k]));
+        }
+        kept_ = std::move(some);
+    }
+
+    std::size_t most_bytes_, bytes_ = 0;
+    std::size_t count_ = 0, every_ = 1;
+    std::vector<DepthAveragedRun::Moment> kept_;
+};
 
 struct DepthAveragedSteps::Parts {
     Parts(const scene::Scene& scene_, const DepthAveragedLimits& limits_)
