@@ -17,7 +17,7 @@ command -v npm >/dev/null || packages+=(npm)
 if [[ ${1:-build} == publish ]]; then
     packages+=(emscripten)
     # Ubuntu has Firefox as a snap alone.
-    if [[ -n $(apt-cache show firefox-esr 2>/dev/null) ]]; then packages+=(firefox-esr xvfb libegl1 libgl1 libgl1-mesa-dri libpci3); fi
+    if grep -qs '^ID=debian' /etc/os-release; then packages+=(firefox-esr xvfb libegl1 libgl1 libgl1-mesa-dri libpci3); fi
 fi
 if [[ ${1:-build} == qgis ]]; then packages+=(qgis python3-qgis python3-gdal python3-numpy); fi
 if [[ ${1:-build} == test ]]; then

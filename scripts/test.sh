@@ -7,7 +7,8 @@
 #   scripts/test.sh tsan      what runs in parallel, under the thread sanitizer
 #   scripts/test.sh style     format, clang-tidy, layers, files; with TALUS_CHANGED_SINCE=<revision> clang-tidy looks only
 #                             at the modules that have changed since
-#   scripts/test.sh publish   the engine of published twins and the npm package talus-engine; installs emscripten and Cesium
+#   scripts/test.sh publish   the engine of published twins, such twins in Chromium and Firefox, and the npm package talus-engine;
+#                             installs emscripten, Cesium and Firefox
 #   scripts/test.sh qgis      the plugin for QGIS, in QGIS without a window; installs QGIS
 #   scripts/test.sh dev       all tests with assertions, every file compiled by itself
 set -euo pipefail
@@ -60,7 +61,8 @@ install_browser_tests() {
     fi
 }
 
-# Builds the page's engine with emscripten, compares its results with the program's, and tests the npm package with its examples.
+# Builds the page's engine with emscripten, compares its results with the program's, tests the npm package with its examples, and
+# clicks through published twins that have the engine.
 test_page_engine() {
     scripts/install_packages.sh publish
     install_browser_tests

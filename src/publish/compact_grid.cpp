@@ -1,5 +1,6 @@
 #include "publish/compact_grid.hpp"
 
+#include <array>
 #include <cstdint>
 #include <cstring>
 #include <vector>
@@ -24,16 +25,20 @@ std::uint32_t rounded(std::uint32_t bits) {
 }  // namespace
 
 std::string compact_grid(std::string_view message) {
-    if (!message.starts_with("TLSG") || message.size() < head_size) return std::string(message);
-    std::uint32_t size = 0;
-    std::memcpy(&size, message.data() + head_size - sizeof size, sizeof size);
+    if (!message.starts_with("TLSG\x02") || message.size() < head_size) return std::string(message);
+    std::array<std::uint32_t, 3> counts{};  // columns, rows, bytes
+    std::memcpy(counts.data(), message.data() + head_size - sizeof counts, sizeof counts);
+    const std::uint32_t size = counts[2];
     std::string head(message.substr(0, head_size));
     const std::string_view packed = message.substr(head_size);
+    constexpr std::uint64_t most_inflated = 1032;  // what a byte of deflate can become
+    const bool fits = size == sizeof(float) * std::uint64_t{counts[0]} * counts[1];
+    if (!fits || size > most_inflated * packed.size()) return std::string(message);
     std::string body(size, '\0');
     uLongf filled = size;
     const int code = uncompress(reinterpret_cast<Bytef*>(body.data()), &filled,
                                 reinterpret_cast<const Bytef*>(packed.data()), static_cast<uLong>(packed.size()));
-    if (code != Z_OK || filled != size || size % sizeof(std::uint32_t) != 0) return std::string(message);
+    if (code != Z_OK || filled != size) return std::string(message);
     if (head[coding_at] == as_values) {
         std::vector<std::uint32_t> numbers(size / sizeof(std::uint32_t));
         if (size > 0) std::memcpy(numbers.data(), body.data(), size);

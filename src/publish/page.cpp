@@ -58,7 +58,8 @@ std::string head(const Content& content, std::string_view scripts, std::string_v
     const std::string_view engine = content.engine ? " 'wasm-unsafe-eval'" : "";
     const std::string_view worker = connects == "'none'" ? "blob:" : connects;
     return fmt::format(
-        "<!doctype html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
+        // Its mark says that the file is UTF-8 whatever a server says of it: blocks of another text would be others.
+        "\xef\xbb\xbf<!doctype html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
         "<meta http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'; script-src {}{}; style-src {}; "
         "connect-src {}; img-src data: blob:; font-src data:; media-src blob:; worker-src {}; base-uri 'none'; "
         "form-action 'none'\">\n"
@@ -90,7 +91,7 @@ std::string worker_with(const Engine& engine, std::string_view worker) {
 }  // namespace
 
 std::string text_of_bytes(std::string_view bytes) {
-    // Where such characters stand in HTML, 0 and the carriage return become others, and markup may begin.
+    // HTML replaces 0 and the carriage return, and '<' may begin markup.
     const auto kept = [](unsigned symbol) { return symbol != 0 && symbol != '\r' && symbol != '<'; };
     std::string text;
     text.reserve(bytes.size() * 6 / 5 + 2);

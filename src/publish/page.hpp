@@ -29,7 +29,7 @@ struct File {
     std::string name, bytes;
 };
 
-/// Bytes as characters of a block of the page, seven bits in each: an eighth more, where base64 takes a third more.
+/// Bytes as characters of a block of the page, seven bits in each: 17 % more, where base64 takes a third more.
 [[nodiscard]] std::string text_of_bytes(std::string_view bytes);
 
 /// One page that needs nothing else and reaches nothing: its own policy forbids it.

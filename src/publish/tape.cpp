@@ -1,6 +1,7 @@
 #include "publish/tape.hpp"
 
 #include <algorithm>
+#include <functional>
 #include <stdexcept>
 #include <utility>
 #include <zlib.h>
@@ -38,11 +39,13 @@ std::string deflated(std::string_view bytes) {
 
 json Tape::keep(const std::string& type, std::string_view body) {
     const std::string packed = shrinks(type, body) ? deflated(body) : std::string(body);
-    // What is now is what was at the end.
-    const auto [known, is_new] = places_.try_emplace(packed, bodies_.size());
-    json place = {{"type", type}, {"at", known->second}, {"size", packed.size()}};
+    // The answer for now often equals the last one in time.
+    const auto [known, is_new] = places_.try_emplace(std::hash<std::string>{}(packed), bodies_.size());
+    const bool kept = !is_new && std::string_view(bodies_).substr(known->second).starts_with(packed);
+    const std::size_t at = kept ? known->second : bodies_.size();
+    if (!kept) bodies_ += packed;
+    json place = {{"type", type}, {"at", at}, {"size", packed.size()}};
     if (packed.size() != body.size() || shrinks(type, body)) place["whole"] = body.size();
-    if (is_new) bodies_ += packed;
     return place;
 }
 

@@ -36,7 +36,7 @@ class Tape {
     nlohmann::json messages_ = nlohmann::json::array();
     nlohmann::json answers_ = nlohmann::json::object(), times_ = nlohmann::json::object();
     std::vector<Last> last_;                               // of each address with times
-    std::unordered_map<std::string, std::size_t> places_;  // in bodies_, of each body once
+    std::unordered_map<std::size_t, std::size_t> places_;  // in bodies_, by the hash of a body
     std::string bodies_;
 };
 

@@ -67,7 +67,7 @@ void Svg::turned_text(std::string_view css_class, double x, double y, double deg
 void PathData::add_number(long tenths) {
     // A sign or a command before a number needs no space.
     const char last = text_.empty() ? '\0' : text_.back();
-    if (tenths >= 0 && (last == '.' || (last >= '0' && last <= '9'))) text_ += ' ';
+    if (tenths >= 0 && last >= '0' && last <= '9') text_ += ' ';
     if (tenths < 0) text_ += '-';
     const long size = std::abs(tenths);
     if (size >= 10 || size == 0) text_ += std::to_string(size / 10);

@@ -48,7 +48,7 @@ class Svg {
 };
 
 /// The data of a path of straight lines, in tenths. Points are written from the one before, and points on a straight
-/// line between their neighbours are left out: a third of the text, and the same picture.
+/// line between their neighbours are left out: a third of the text, and to a tenth the same picture.
 class PathData {
   public:
     void move_to(double x, double y);

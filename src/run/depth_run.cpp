@@ -294,38 +294,37 @@ class GridRun {
 };
 
 struct DepthRun::Parts {
-    Parts(const scene::Scene& scene, const RunOptions& run_options, Inside inside)
+    Parts(const scene::Scene& scene, const RunOptions& run_options)
         : options(run_options),
           threads(scene.spec.solver.thread_count),
-          run(scene, inside),
           state_clock(options),
           frame_clock(scene, options) {}
 
     void look_at_state(bool at_end = false) {
-        if (state_clock.due(run.time(), at_end)) options.on_state(run.state(), run.time());
+        if (state_clock.due(run->time(), at_end)) options.on_state(run->state(), run->time());
     }
     void show_frame(bool at_end = false) {
-        if (frame_clock.due(run.time(), at_end)) options.on_frame(run.frame());
+        if (frame_clock.due(run->time(), at_end)) options.on_frame(run->frame());
     }
     /// A step. False: it is over.
     bool advance() {
         if (options.stop_requested && options.stop_requested->load()) return false;
-        if (state_clock.wanted()) run.keep_before_end();
-        const bool goes_on = run.advance();
-        if (options.on_grid_step) options.on_grid_step(run.solver());
+        if (state_clock.wanted()) run->keep_before_end();
+        const bool goes_on = run->advance();
+        if (options.on_grid_step) options.on_grid_step(run->solver());
         if (!goes_on) return false;
         look_at_state();
         show_frame();
-        if (options.on_progress) options.on_progress(run.progress());
+        if (options.on_progress) options.on_progress(run->progress());
         return true;
     }
     RunResult finish() {
-        if (!run.fault()) {
+        if (!run->fault()) {
             look_at_state(true);
             show_frame(true);
         }
         const StopWatch finishing;
-        RunResult result = run.result(threads.count());
+        RunResult result = run->result(threads.count());
         result.seed_time = seed_time;
         result.finish_time = finishing.seconds();
         return result;
@@ -333,7 +332,7 @@ struct DepthRun::Parts {
 
     const RunOptions& options;
     Threads threads;
-    GridRun run;
+    std::optional<GridRun> run;
     StateClock state_clock;
     FrameClock frame_clock;
     double seed_time = 0;
@@ -345,20 +344,21 @@ DepthRun& DepthRun::operator=(DepthRun&&) noexcept = default;
 DepthRun::~DepthRun() = default;
 
 Result<DepthRun> DepthRun::start(const scene::Scene& scene, const RunOptions& options, Inside inside) {
-    const Threads threads(scene.spec.solver.thread_count);
-    return threads.execute([&]() -> Result<DepthRun> {
+    auto parts = std::make_unique<Parts>(scene, options);
+    const Status started = parts->threads.execute([&]() -> Status {
         const StopWatch seeding;
-        auto parts = std::make_unique<Parts>(scene, options, inside);
-        TALUS_TRY(parts->run.check_inflows());
+        TALUS_TRY(parts->run.emplace(scene, inside).check_inflows());
         if (!options.start_from.empty()) {
-            const Status restored = parts->run.restore(options.start_from);
+            const Status restored = parts->run->restore(options.start_from);
             if (!restored) return Error{options.start_from_file + ": " + restored.error().message};
         }
         parts->seed_time = seeding.seconds();
         parts->show_frame();
         parts->look_at_state();
-        return DepthRun(std::move(parts));
+        return {};
     });
+    if (!started) return started.error();
+    return DepthRun(std::move(parts));
 }
 
 bool DepthRun::advance() {
@@ -369,14 +369,17 @@ RunResult DepthRun::finish() {
     return parts_->threads.execute([&] { return parts_->finish(); });
 }
 
-Result<RunResult> run_depth_averaged(const scene::Scene& scene, const RunOptions& options, Inside inside) {
-    const Threads threads(scene.spec.solver.thread_count);
-    return threads.execute([&]() -> Result<RunResult> {
-        TALUS_ASSIGN(DepthRun run, DepthRun::start(scene, options, inside));
-        while (run.advance()) {
+RunResult DepthRun::complete() {
+    return parts_->threads.execute([&] {
+        while (parts_->advance()) {
         }
-        return run.finish();
+        return parts_->finish();
     });
+}
+
+Result<RunResult> run_depth_averaged(const scene::Scene& scene, const RunOptions& options, Inside inside) {
+    TALUS_ASSIGN(DepthRun run, DepthRun::start(scene, options, inside));
+    return run.complete();
 }
 
 }  // namespace talus::run

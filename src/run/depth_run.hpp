@@ -10,7 +10,7 @@ namespace talus::run {
 /// Whether debris of the depth-averaged model has friction inside, as particles have it.
 enum class Inside { frictionless, as_particles };
 
-/// A run of the depth-averaged model, step by step, for who has other things to do between two steps. Buildings and
+/// A run of the depth-averaged model, step by step, for callers that do other things between two steps. Buildings and
 /// barriers stand on the cells whose centres they cover or whose line they cross.
 class DepthRun {
   public:
@@ -25,6 +25,8 @@ class DepthRun {
     bool advance();
     /// Once, at its end or before.
     [[nodiscard]] RunResult finish();
+    /// All steps that are left, and finish().
+    [[nodiscard]] RunResult complete();
 
   private:
     struct Parts;

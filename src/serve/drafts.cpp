@@ -19,7 +19,6 @@
 #include "session/json_text.hpp"
 #include "session/thinned.hpp"
 #include "twin/json_keys.hpp"
-#include "twin/scenario.hpp"
 
 namespace talus::serve {
 namespace {

@@ -346,7 +346,7 @@ Result<publish::PageFiles> published_page() {
         if (file.name == "published/worker.js") page.worker = file.content;
         if (file.name == "published/loader.js") page.loader = file.content;
     }
-    if (page.script.empty())
+    if (page.script.empty() || page.style.empty() || page.loader.empty())
         return Error{"this program was built without the page (TALUS_WEB); it cannot publish a twin"};
     return page;
 }

@@ -52,7 +52,7 @@ std::vector<int> DepthAveragedResults::look(Scenarios& all) {
         const twin::Scenario& scenario = all.at(i);
         std::string key = scenario.setup_key();
         if (slot(i).state != State::off && slot(i).key == key) continue;
-        slot(i) = {State::waiting, std::move(key), ++asked_, scenario.for_depth_averaged(), {}, 0, {}};
+        slot(i) = {State::waiting, std::move(key), ++asked_, scenario.for_depth_averaged(limits_), {}, 0, {}};
         changed.push_back(i);
     }
     return changed;
@@ -133,7 +133,7 @@ bool DepthAveragedInTurns::begin() {
         return true;
     }
     running_->scene = std::make_unique<const scene::Scene>(std::move(*scene));
-    auto steps = twin::DepthAveragedSteps::start(*running_->scene);
+    auto steps = twin::DepthAveragedSteps::start(*running_->scene, limits);
     if (!steps) {
         end({.failed = steps.error().message});
         return true;

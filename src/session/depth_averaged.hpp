@@ -34,6 +34,8 @@ class DepthAveragedResults {
         std::string refused{}, failed{};
     };
 
+    explicit DepthAveragedResults(const twin::DepthAveragedLimits& limits = {}) : limits_(limits) {}
+
     /// For all scenarios, also those to come. Off: results are discarded.
     std::vector<int> turn(bool on);
     [[nodiscard]] bool on() const { return on_; }
@@ -52,7 +54,7 @@ class DepthAveragedResults {
     [[nodiscard]] nlohmann::json describe(int scenario) const;
     /// The result for the present setup; nullptr: there is none yet.
     [[nodiscard]] Run result(int scenario) const { return slot(scenario).made; }
-    /// A sentence for who asks for one.
+    /// Why there is no result, as a sentence.
     [[nodiscard]] std::string why_none(int scenario) const;
 
   private:
@@ -70,6 +72,7 @@ class DepthAveragedResults {
     Slot& slot(int scenario) { return slots_[static_cast<std::size_t>(scenario)]; }
     [[nodiscard]] const Slot& slot(int scenario) const { return slots_[static_cast<std::size_t>(scenario)]; }
 
+    twin::DepthAveragedLimits limits_;
     std::array<Slot, Scenarios::max_count> slots_;
     std::uint64_t asked_ = 0;
     bool on_ = false;
@@ -100,8 +103,11 @@ class DepthAveragedInTurns {
     void end(DepthAveragedResults::Outcome outcome);
     void tell(int scenario) { tell_(scenario, results_.describe(scenario)); }
 
+    /// A page has 2 GB for this, up to six results and the live runs.
+    static constexpr twin::DepthAveragedLimits limits{.most_cells = 1e6, .depth_bytes = 16'000'000};
+
     std::function<void(int, nlohmann::json)> tell_;
-    DepthAveragedResults results_;
+    DepthAveragedResults results_{limits};
     std::optional<Running> running_;
     Clock::time_point told_{};
 };

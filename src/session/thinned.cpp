@@ -13,10 +13,6 @@ int reduced(int count, int factor) {
 
 }  // namespace
 
-Grid<float> thinned(const Grid<float>& whole, double max_cells) {
-    return thinned_by(whole, thinning(whole.geometry, max_cells));
-}
-
 int thinning(const GridGeometry& grid, double max_cells) {
     int factor = 1;
     while (static_cast<double>(reduced(grid.columns, factor)) * reduced(grid.rows, factor) > max_cells) ++factor;

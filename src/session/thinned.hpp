@@ -7,9 +7,6 @@
 
 namespace talus::session {
 
-/// The grid with every so many columns and rows, so that at most `max_cells` remain: the middle one of as many.
-[[nodiscard]] Grid<float> thinned(const Grid<float>& whole, double max_cells);
-
 /// Cells of a terrain that a page may ask for.
 inline constexpr double fewest_terrain_cells = 100, most_terrain_cells = 16e6, usual_terrain_cells = 1e6;
 

@@ -51,7 +51,7 @@ struct DepthAveragedRun {
 /// not have.
 [[nodiscard]] Result<scene::Scene> for_depth_averaged(scene::Scene scene, const DepthAveragedLimits& limits = {});
 
-/// A run of a scene of for_depth_averaged(), step by step, for who has one thread for it and the live run.
+/// A run of a scene of for_depth_averaged(), step by step, for callers with one thread for it and the live run.
 class DepthAveragedSteps {
   public:
     /// `scene` must live as long. Errors: as of run::run_scene().
@@ -74,7 +74,7 @@ class DepthAveragedSteps {
     std::unique_ptr<Parts> parts_;
 };
 
-/// Runs a scene of for_depth_averaged(), until `stop` or to its end. `progress` is called after every step with the
+/// Runs a scene of for_depth_averaged(), until `stop` or to its end. `progress` is called between two steps with the
 /// share of the time that has passed. Errors: as of run::run_scene().
 [[nodiscard]] Result<DepthAveragedRun> run_depth_averaged(const scene::Scene& scene, const std::atomic<bool>& stop,
                                                           const std::function<void(double share)>& progress = {},

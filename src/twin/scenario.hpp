@@ -22,11 +22,11 @@
 #include "sim/relax.hpp"
 #include "sim/state.hpp"
 #include "twin/alarms.hpp"
+#include "twin/depth_averaged.hpp"
 #include "twin/frame.hpp"
 
 namespace talus::twin {
 
-struct DepthAveragedRun;
 struct Journal;
 struct JournalEntry;
 class RecordedFlow;
@@ -180,7 +180,8 @@ class Scenario {
     /// The present setup as a text: setups of one scene are the same if their texts are.
     [[nodiscard]] std::string setup_key() const;
     /// Makes the scene of the present setup, from time 0, for that model. Errors: as twin::for_depth_averaged().
-    [[nodiscard]] std::function<Result<scene::Scene>()> for_depth_averaged() const;
+    [[nodiscard]] std::function<Result<scene::Scene>()> for_depth_averaged(
+        const DepthAveragedLimits& limits = {}) const;
     /// `{"time_s", "over", "rows", ...}` of docs/protocol.md: this run so far beside that one.
     [[nodiscard]] std::function<nlohmann::json()> compared_with(std::shared_ptr<const DepthAveragedRun> other) const;
 

@@ -132,24 +132,25 @@ std::string Scenario::setup_key() const {
     return key.dump();
 }
 
-std::function<Result<scene::Scene>()> Scenario::for_depth_averaged() const {
+std::function<Result<scene::Scene>()> Scenario::for_depth_averaged(const DepthAveragedLimits& limits) const {
     std::vector<double> starts;
     for (const ReleaseSetup& release : parts_->setup().releases)
         starts.push_back(parts_->run->start_time_of(release.id));
-    return [scene = parts_->scene, setup = parts_->setup(), starts = std::move(starts)]() -> Result<scene::Scene> {
-        scene::Scene now = scene_of(*scene, setup);
-        for (std::size_t k = 0; k < starts.size(); ++k) now.releases[k].spec.start_time = starts[k];
-        // What was changed here counts as given, so that what the model has no use for is named.
-        for (const params::Parameter* parameter : live_parameters()) {
-            params::SceneSpec before, after;
-            before.material = scene->spec.material;
-            after.material = setup.material;
-            const bool changed =
-                params::plain_text(parameter->get(before, 0)) != params::plain_text(parameter->get(after, 0));
-            if (changed) now.given_keys.insert("material." + parameter->key);
-        }
-        return twin::for_depth_averaged(std::move(now));
-    };
+    return
+        [scene = parts_->scene, setup = parts_->setup(), starts = std::move(starts), limits]() -> Result<scene::Scene> {
+            scene::Scene now = scene_of(*scene, setup);
+            for (std::size_t k = 0; k < starts.size(); ++k) now.releases[k].spec.start_time = starts[k];
+            // What was changed here counts as given, so that what the model has no use for is named.
+            for (const params::Parameter* parameter : live_parameters()) {
+                params::SceneSpec before, after;
+                before.material = scene->spec.material;
+                after.material = setup.material;
+                const bool changed =
+                    params::plain_text(parameter->get(before, 0)) != params::plain_text(parameter->get(after, 0));
+                if (changed) now.given_keys.insert("material." + parameter->key);
+            }
+            return twin::for_depth_averaged(std::move(now), limits);
+        };
 }
 
 std::function<json()> Scenario::compared_with(std::shared_ptr<const DepthAveragedRun> other) const {

@@ -45,33 +45,40 @@ const browser = spawn(firefox, ["--no-remote", "--profile", profile, "--marionet
 
 /** The connection, once the browser listens. */
 async function open() {
-  for (;;) {
+  for (const end = Date.now() + 60_000; ;) {
+    if (Date.now() > end || browser.exitCode !== null) throw new Error("Firefox does not listen");
     const socket = connect(port, "127.0.0.1");
     const connected = await new Promise((done) => socket.once("connect", () => done(true)).once("error", () => done(false)));
     if (connected) return socket;
     await new Promise((next) => setTimeout(next, 200));
   }
 }
-const socket = await open();
+let socket;
 const asked = new Map();
 let heard = Buffer.alloc(0), greeted;
 const greeting = new Promise((done) => { greeted = done; });
-socket.on("data", (data) => {
-  heard = Buffer.concat([heard, data]);
-  for (;;) {  // LENGTH:JSON
-    const colon = heard.indexOf(":");
-    const length = Number(heard.subarray(0, Math.max(0, colon)));
-    if (colon < 0 || heard.length < colon + 1 + length) return;
-    const message = JSON.parse(heard.toString("utf8", colon + 1, colon + 1 + length));
-    heard = heard.subarray(colon + 1 + length);
-    if (!Array.isArray(message)) greeted();
-    else {
-      const { done, failed } = asked.get(message[1]);
-      if (message[2]) failed(new Error(`${message[2].error}: ${message[2].message}`));
-      else done(message[3] !== null && "value" in message[3] ? message[3].value : message[3]);
+/** Answers to what is asked; a browser that has ended answers nothing more. */
+function listen() {
+  socket.on("data", (data) => {
+    heard = Buffer.concat([heard, data]);
+    for (;;) {  // LENGTH:JSON
+      const colon = heard.indexOf(":");
+      const length = Number(heard.subarray(0, Math.max(0, colon)));
+      if (colon < 0 || heard.length < colon + 1 + length) return;
+      const message = JSON.parse(heard.toString("utf8", colon + 1, colon + 1 + length));
+      heard = heard.subarray(colon + 1 + length);
+      if (!Array.isArray(message)) greeted();
+      else {
+        const { done, failed } = asked.get(message[1]);
+        if (message[2]) failed(new Error(`${message[2].error}: ${message[2].message}`));
+        else done(message[3] !== null && "value" in message[3] ? message[3].value : message[3]);
+      }
     }
-  }
-});
+  });
+  socket.on("close", () => {
+    for (const { failed } of asked.values()) failed(new Error("Firefox has ended"));
+  });
+}
 let count = 0;
 const ask = (command, parameters = {}) => new Promise((done, failed) => {
   const text = JSON.stringify([0, ++count, command, parameters]);
@@ -91,6 +98,8 @@ const button = (name) => `[...document.querySelectorAll("button")].find((one) =>
 
 let status = 0;
 try {
+  socket = await open();
+  listen();
   await greeting;
   await ask("WebDriver:NewSession", {});
   await ask("WebDriver:SetWindowRect", { width: 1400, height: 900 });
@@ -119,7 +128,7 @@ try {
   status = 1;
 } finally {
   browser.kill();
-  await new Promise((done) => browser.once("exit", done));
+  if (browser.exitCode === null && browser.signalCode === null) await new Promise((done) => browser.once("exit", done));
   screen.end();
   rmSync(profile, { recursive: true, force: true });
 }

@@ -125,13 +125,14 @@ async function testEngine(opened, address) {
   });
   await check("engine: the depth-averaged model computes the same setup, and its map is drawn", async () => {
     await row("A").click();
-    await page.getByLabel("Depth-averaged model").check();
+    const box = page.locator(".depth-averaged-switch input");
+    await box.check();
     await until(() => page.getByLabel("Map layer on the ground").inputValue(), (layer) => layer === "depth_averaged/peak_depth", "its map");
-    await until(() => page.locator("main.middle").innerText(), (text) => /depth-averaged/i.test(text), "its legend");
-    await page.click("[data-tab=compare]");
-    await until(() => page.locator(".tab-panels").innerText(), (text) => /Depth-averaged/i.test(text), "figures of both");
+    await page.click("[data-tab=front]");
+    await until(() => page.locator("table.both-models tbody tr").count(), (rows) => rows > 3, "figures of both models");
     await page.screenshot({ path: join(output, "engine_depth_averaged.png") });
-    await page.getByLabel("Depth-averaged model").uncheck();
+    await box.uncheck();
+    await until(() => page.getByLabel("Map layer on the ground").inputValue(), (layer) => !layer.startsWith("depth_averaged"), "the map of the particles");
   });
   let archive = Buffer.alloc(0);
   await check("engine: tables, maps and journal of the run are saved", async () => {
@@ -244,6 +245,19 @@ try {
     await phone.page.screenshot({ path: join(output, "phone.png") });
     silent(phone, (url) => url === address || url.startsWith("blob:") || url.startsWith("data:"));
     await phone.close();
+  });
+
+  await check("a server that names another character set does not spoil it", async () => {
+    const server = createServer((request, response) => response.writeHead(request.url === "/" ? 200 : 404, { "Content-Type": "text/html; charset=iso-8859-1" })
+      .end(request.url === "/" ? readFileSync(file) : ""));
+    await new Promise((done) => server.listen(0, "127.0.0.1", done));
+    try {
+      const web = await open(`http://127.0.0.1:${server.address().port}/`, { width: 900, height: 700 });
+      if (!(await web.page.locator("h1").innerText()).startsWith("Sham Tseng")) throw new Error("another title");
+      await web.close();
+    } finally {
+      server.close();
+    }
   });
 
   await check("a folder opens from a web server, and asks for its own files alone", async () => {

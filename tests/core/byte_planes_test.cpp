@@ -1,7 +1,6 @@
 #include "core/byte_planes.hpp"
 
 #include <bit>
-#include <cmath>
 #include <limits>
 
 #include <gtest/gtest.h>
