@@ -17,28 +17,20 @@
 namespace talus::report {
 namespace {
 
-void add_points(PathData& data, const MapFrame& frame, const std::vector<PlanPoint>& points) {
+std::string path_data(const MapFrame& frame, const std::vector<PlanPoint>& points, bool closed = false) {
+    PathData data;
     for (std::size_t k = 0; k < points.size(); ++k) {
         const double x = frame.x(points[k].x), y = frame.y(points[k].y);
         k == 0 ? data.move_to(x, y) : data.line_to(x, y);
     }
-}
-
-std::string path_data(const MapFrame& frame, const std::vector<PlanPoint>& points) {
-    PathData data;
-    add_points(data, frame, points);
+    if (closed) data.close();
     return data.take();
 }
 
 std::string polygon_data(const MapFrame& frame, const Polygon& polygon) {
-    PathData data;
-    const auto add_ring = [&](const Ring& ring) {
-        add_points(data, frame, ring);
-        data.close();
-    };
-    add_ring(polygon.outer);
-    for (const Ring& hole : polygon.holes) add_ring(hole);
-    return data.take();
+    std::string d = path_data(frame, polygon.outer, true);
+    for (const Ring& hole : polygon.holes) d += path_data(frame, hole, true);
+    return d;
 }
 
 /// Decimals that tell multiples of a step apart, whose digits are 1, 2, 2.5 or 5.
