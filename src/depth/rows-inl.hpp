@@ -141,12 +141,12 @@ HWY_INLINE void keep(const Line<L>& line, const L& wall_before, const L& wall_af
     store(wall_beside(line.depth, line.after, line.bed_after) + wall_after, row.after.wall, j);
 }
 
-/// Reconstructs a row of cells; `i`: index of entry 0.
-HWY_INLINE void reconstruct(const StageData& data, std::ptrdiff_t i, int cells, Row& row, Numbers& speed) {
+/// Reconstructs the entries of a row from `begin` to before `end`; `i`: index of entry 0.
+HWY_INLINE void reconstruct(const StageData& data, std::ptrdiff_t i, int begin, int end, Row& row, Numbers& speed) {
     const std::ptrdiff_t up = data.stride;
     const L zero(0), one(1), dry_limit(dry_depth), gravity(data.gravity), inverse_cell(data.inverse_cell);
     const L flow_scale(0.999999F / (data.inverse_cell * data.time_step));
-    for (int j = 0; j < cells; j += lane_count) {
+    for (int j = begin; j < end; j += lane_count) {
         const auto at = [&](const float* raster, std::ptrdiff_t offset)
                             HWY_ATTR { return L::load(raster + (i + j + offset)); };
         const float *h = data.from.depth, *u = data.from.u, *v = data.from.v;

@@ -40,6 +40,7 @@ Solver::Solver(const Grid<double>& bed, const Material& material, const GroundVa
     segments_.reserve(tile_count);
     fastest_.assign(tile_count, 0);
     lost_.assign(tile_count, 0);
+    computed_.assign(tile_count, 0);
     if (material_.soil.on) {
         material_.pore_pressure_decay_time = 0;
         solid_fraction_.assign(size, static_cast<float>(material_.soil.solid_fraction));
@@ -254,7 +255,7 @@ double Solver::advance_stage(bool second) {
             const Segment& segment = segments_[s];
             std::uint8_t* changed =
                 &changed_[static_cast<std::size_t>(segment.tile_row) * tile_columns_ + segment.first_tile];
-            fastest_[s] = stages_.advance(data, segment, changed);
+            fastest_[s] = stages_.advance(data, segment, changed, &computed_[s]);
             lost_[s] = take_outflow(segment, data.to);
         }
     });
@@ -292,9 +293,7 @@ Status Solver::advance(double longest) {
     time_ += time_step_;
     drain();
     ++steps_;
-    for (const Segment& s : segments_) {
-        cell_updates_ += static_cast<std::uint64_t>(s.tiles) * tile_edge * tile_edge;
-    }
+    for (std::size_t s = 0; s < segments_.size(); ++s) cell_updates_ += static_cast<std::uint64_t>(computed_[s]);
     if (!std::isfinite(fastest)) {
         return Error{
             fmt::format("a speed of the depth-averaged model is not a number at t = {:.4g} s; check the "

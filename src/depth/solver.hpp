@@ -270,6 +270,7 @@ class Solver {
     std::vector<Segment> segments_;
     std::vector<float> fastest_;  ///< by segment
     std::vector<double> lost_;    ///< m, by segment
+    std::vector<int> computed_;   ///< cells, by segment
     double highest_line_ = 0;     ///< m: energy line of the highest debris so far, see raise_line()
     double signal_ = 0;           ///< m/s, the fastest wave of the next step; 0: to be found
     double time_ = 0, time_step_ = 0, left_ = 0;

@@ -64,9 +64,10 @@ struct StageData {
 };
 
 struct Stages {
-    /// Writes whether a cell changed to `changed`, one entry per tile of the segment. Returns the largest |u| + |v| +
-    /// 2 sqrt(g h) of `to`, m/s; NaN where any is.
-    float (*advance)(const StageData& data, const Segment& segment, std::uint8_t* changed);
+    /// Writes whether a cell changed to `changed`, one entry per tile of the segment, and the number of cells with
+    /// debris near them, which alone are computed. Returns the largest |u| + |v| + 2 sqrt(g h) of `to`, m/s; NaN where
+    /// any is.
+    float (*advance)(const StageData& data, const Segment& segment, std::uint8_t* changed, int* computed);
     std::string_view instruction_set;
 };
 

@@ -3,10 +3,12 @@
 #define HWY_TARGET_INCLUDE "depth/step_stages.cpp"
 #include <hwy/foreach_target.h>
 // (must come after foreach_target)
+#include <algorithm>
 #include <cmath>
 #include <hwy/highway.h>
 
 #include "depth/faces-inl.hpp"
+#include "depth/live-inl.hpp"
 #include "depth/rows-inl.hpp"
 #include "depth/stages.hpp"
 #include "depth/update-inl.hpp"
@@ -15,7 +17,7 @@ HWY_BEFORE_NAMESPACE();
 namespace talus::depth::HWY_NAMESPACE {
 namespace {
 
-[[gnu::flatten]] float advance(const StageData& data, const Segment& segment, std::uint8_t* changed) {
+[[gnu::flatten]] float advance(const StageData& data, const Segment& segment, std::uint8_t* changed, int* computed) {
     Scratch scratch{};
     const int width = segment.tiles * tile_edge;
     const std::ptrdiff_t first =
@@ -23,30 +25,41 @@ namespace {
     const auto row_of = [&](int r) HWY_ATTR -> Row& { return scratch.rows[static_cast<std::size_t>(r & 1)]; };
     const bool carries = data.from.pore_pressure != nullptr, flies = data.from.height != nullptr;
     const bool evolves = data.from.solid_fraction != nullptr;
+    const Live live(data, first, segment.tiles);
+    *computed = live.count() * tile_edge;
     Fastest fastest;
     // Row r of the segment is r + 1 here, so that the row before it is 0.
     for (int r = 0; r < tile_edge + 2; ++r) {
-        if (r >= 2) {
+        for (int tile = 0; r >= 2 && tile <= segment.tiles; ++tile) {
+            if (!live.faces_east(r - 2, tile)) continue;
             const Row& row = row_of(r - 1);
-            for (int j = 0; j <= width; j += lane_count) {
+            for (int j = tile * tile_edge; j <= width && j < (tile + 1) * tile_edge; j += lane_count) {
                 cross_faces(data.gravity, row, j, row, j + 1, true, scratch.x, j);
                 if (carries) cross_faces_with_pore_pressure(row, j, row, j + 1, evolves, scratch.x, j);
                 if (flies) cross_faces_in_flight(row, j, row, j + 1, scratch.x, j);
             }
         }
-        reconstruct(data, first + (r - 1) * static_cast<std::ptrdiff_t>(data.stride) - 1, width + 2, row_of(r),
-                    scratch.speed[static_cast<std::size_t>(r % 3)]);
+        for (int tile = 0; tile <= segment.tiles; ++tile) {
+            if (!live.reconstructed(r - 1, tile)) continue;
+            reconstruct(data, first + (r - 1) * static_cast<std::ptrdiff_t>(data.stride) - 1, tile * tile_edge,
+                        std::min((tile + 1) * tile_edge, width + 2), row_of(r),
+                        scratch.speed[static_cast<std::size_t>(r % 3)]);
+        }
         if (r == 0) continue;
         Faces& faces = scratch.y[static_cast<std::size_t>(r & 1)];
-        for (int j = 1; j <= width; j += lane_count) {
-            cross_faces(data.gravity, row_of(r - 1), j, row_of(r), j, false, faces, j);
-            if (carries) cross_faces_with_pore_pressure(row_of(r - 1), j, row_of(r), j, evolves, faces, j);
-            if (flies) cross_faces_in_flight(row_of(r - 1), j, row_of(r), j, faces, j);
+        for (int tile = 0; tile < segment.tiles; ++tile) {
+            if (!live.faces_between(r - 1, tile)) continue;
+            for (int j = tile * tile_edge + 1; j <= (tile + 1) * tile_edge; j += lane_count) {
+                cross_faces(data.gravity, row_of(r - 1), j, row_of(r), j, false, faces, j);
+                if (carries) cross_faces_with_pore_pressure(row_of(r - 1), j, row_of(r), j, evolves, faces, j);
+                if (flies) cross_faces_in_flight(row_of(r - 1), j, row_of(r), j, faces, j);
+            }
         }
-        if (r < 2) continue;
-        for (int j = 1; j <= width; j += lane_count) {
-            const std::ptrdiff_t i = first + (r - 2) * static_cast<std::ptrdiff_t>(data.stride) + (j - 1);
-            update(data, scratch, r - 1, i, j, fastest);
+        for (int tile = 0; r >= 2 && tile < segment.tiles; ++tile) {
+            for (int j = tile * tile_edge + 1; j <= (tile + 1) * tile_edge; j += lane_count) {
+                const std::ptrdiff_t i = first + (r - 2) * static_cast<std::ptrdiff_t>(data.stride) + (j - 1);
+                live.cells(r - 2, tile) ? update(data, scratch, r - 1, i, j, fastest) : leave_empty(data, i);
+            }
         }
     }
     for (int j = 1; j <= width; ++j) {

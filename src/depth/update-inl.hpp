@@ -105,6 +105,16 @@ HWY_INLINE L carried_after(const Numbers& own, const Numbers& x, const Numbers& 
     return (depth * load(own, j) - per_cell * out) / larger(new_depth, L(dry_depth));
 }
 
+/// Leaves lane_count cells empty.
+HWY_INLINE void leave_empty(const StageData& data, std::ptrdiff_t i) {
+    const L zero(0);
+    for (float* raster : {data.to.depth, data.to.u, data.to.v, data.to.spare}) zero.store(raster + i);
+    if (data.passes_east != nullptr) {
+        zero.store(data.passes_east + i);
+        zero.store(data.passes_north + i);
+    }
+}
+
 /// Updates lane_count cells at index i, entry j of the row.
 HWY_INLINE void update(const StageData& data, Scratch& scratch, int r, std::ptrdiff_t i, int j, Fastest& fastest) {
     const Row& row = scratch.rows[static_cast<std::size_t>(r & 1)];
