@@ -48,7 +48,7 @@ std::unique_ptr<scene::Scene> valley_scene(std::int64_t cells) {
     return scene;
 }
 
-constexpr int steps_before = 30;
+constexpr int grid_steps_before = 30;
 
 void per_cell(benchmark::State& run, const scene::Scene& scene) {
     run.SetItemsProcessed(run.iterations() * static_cast<std::int64_t>(scene.terrain.elevation().geometry.size()));
@@ -56,7 +56,7 @@ void per_cell(benchmark::State& run, const scene::Scene& scene) {
 
 run::DepthRun started(const scene::Scene& scene, const run::RunOptions& options) {
     run::DepthRun run = std::move(*run::DepthRun::start(scene, options));
-    for (int step = 0; step < steps_before; ++step) run.advance();
+    for (int step = 0; step < grid_steps_before; ++step) run.advance();
     return run;
 }
 
