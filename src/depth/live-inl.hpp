@@ -51,7 +51,9 @@ class Live {
                     const auto& strips = wet[static_cast<std::size_t>(r)];
                     near |= (strips[t] & end_east) | (strips[t + 1] & anywhere) | (strips[t + 2] & end_west);
                 }
-                of(row, tile) = near != 0;
+                // Of `to` the strip's own cells alone: those around are being written by others.
+                const std::ptrdiff_t own = first + row * static_cast<std::ptrdiff_t>(data.stride) + tile * tile_edge;
+                of(row, tile) = near != 0 || (data.second && any_of(data.to.depth + own, tile_edge));
             }
         }
     }
@@ -85,16 +87,14 @@ class Live {
     static constexpr std::uint8_t anywhere = 1, end_west = 2, end_east = 4;
 
     /// Not a number counts as debris: it must be found.
-    static HWY_INLINE bool holds(const StageData& data, std::ptrdiff_t i, int cells) {
+    static HWY_INLINE bool any_of(const float* depth, int cells) {
         bool any = false;
-        for (int k = 0; k < cells; ++k) any |= !(data.from.depth[i + k] <= 0);
-        if (data.second) {
-            for (int k = 0; k < cells; ++k) any |= !(data.to.depth[i + k] <= 0);
-        }
-        if (data.inflow.depth != nullptr) {
-            for (int k = 0; k < cells; ++k) any |= !(data.inflow.depth[i + k] <= 0);
-        }
+        for (int k = 0; k < cells; ++k) any |= !(depth[k] <= 0);
         return any;
+    }
+    static HWY_INLINE bool holds(const StageData& data, std::ptrdiff_t i, int cells) {
+        return any_of(data.from.depth + i, cells) ||
+               (data.inflow.depth != nullptr && any_of(data.inflow.depth + i, cells));
     }
     [[nodiscard]] HWY_INLINE bool& of(int row, int tile) {
         return live_[static_cast<std::size_t>(row)][static_cast<std::size_t>(tile)];
