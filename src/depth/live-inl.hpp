@@ -22,7 +22,7 @@ namespace talus::depth::HWY_NAMESPACE {
 class Live {
   public:
     HWY_INLINE Live(const StageData& data, std::ptrdiff_t first, int tiles) : tiles_(tiles) {
-        // What goes with the mass is kept where there is none, and so is flight.
+        // Cells without debris keep their pore pressure and their state of flight, so all are computed.
         if (data.from.pore_pressure != nullptr || data.from.height != nullptr) {
             for (int row = 0; row < tile_edge; ++row) {
                 for (int tile = 0; tile < tiles; ++tile) of(row, tile) = true;
@@ -83,7 +83,7 @@ class Live {
 
   private:
     static constexpr int reach = 2;
-    /// Where in a strip there is any: in its two cells at either end, which are within reach of the next strip.
+    /// Where a strip has debris. Its two cells at either end are within reach of the next strip.
     static constexpr std::uint8_t anywhere = 1, end_west = 2, end_east = 4;
 
     /// Not a number counts as debris: it must be found.

@@ -58,7 +58,7 @@ std::string head(const Content& content, std::string_view scripts, std::string_v
     const std::string_view engine = content.engine ? " 'wasm-unsafe-eval'" : "";
     const std::string_view worker = connects == "'none'" ? "blob:" : connects;
     return fmt::format(
-        // Its mark says that the file is UTF-8 whatever a server says of it: blocks of another text would be others.
+        // The byte order mark makes browsers read UTF-8 whatever a server says: in another encoding blocks are damaged.
         "\xef\xbb\xbf<!doctype html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
         "<meta http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'; script-src {}{}; style-src {}; "
         "connect-src {}; img-src data: blob:; font-src data:; media-src blob:; worker-src {}; base-uri 'none'; "

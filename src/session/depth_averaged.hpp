@@ -17,8 +17,8 @@
 namespace talus::session {
 
 /// What is known of it, and what is to be computed next: one run at a time, that of the scenario that was changed last.
-/// A changed setup discards its result. For one thread at a time. Functions that return numbers of scenarios return
-/// those of which there is something to be told.
+/// A changed setup discards its result. For one thread at a time. Functions that return scenario indices return
+/// those whose status has changed.
 class DepthAveragedResults {
   public:
     using Run = std::shared_ptr<const twin::DepthAveragedRun>;

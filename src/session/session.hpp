@@ -54,7 +54,7 @@ class Session final : private Watcher {
     [[nodiscard]] std::optional<std::vector<twin::RunFile>> files(const std::string& scenario) const;
     /// `{"on": true}`: the depth-averaged model beside the runs.
     [[nodiscard]] Reply turn_depth_averaged(const std::string& id, const nlohmann::json& wanted);
-    /// What of it: nothing (its state), "comparison", or "layers/" and a name, at a time.
+    /// `question`: empty for its status, "comparison", or "layers/" and a name; a layer may have a time.
     [[nodiscard]] Reply depth_averaged(const std::string& scenario, const std::string& question,
                                        const Arguments& arguments = {});
     [[nodiscard]] Reply scene() const { return reply(scenarios_->at(0).scene_json()); }
