@@ -117,6 +117,17 @@ TEST_F(DepthAveragedInAPage, computes_a_changed_setup_again_and_a_new_scenario_a
     EXPECT_GE(std::count_if(events.begin(), events.end(), told), 4) << "that it runs, and how it ended, of each";
 }
 
+TEST_F(DepthAveragedInAPage, ends_a_run_that_nobody_wants_any_more) {
+    turn(true);
+    advance();
+    ASSERT_EQ(status()["state"], "running");
+    turn(false);
+    advance();  // tells everybody
+    const auto before = time_;
+    advance();
+    EXPECT_LT(time_ - before, milliseconds(10)) << "there is nothing left to compute";
+}
+
 TEST(DepthAveragedResults, takes_no_result_that_nobody_asked_for) {
     DepthAveragedResults results;
     EXPECT_FALSE(results.begin()) << "it is off";
