@@ -135,9 +135,10 @@ Outcome measure_all(const Plan& plan, const fs::path& builtin_scene, const Inter
 }
 
 int bench_grid(const Plan& plan, bool json) {
+    bench::Calibration calibration;
     std::vector<bench::GridRow> rows;
     for (const int threads : plan.threads) {
-        const Result<bench::GridRow> row = bench::measure_grid(threads, plan.task.length.repeats);
+        const Result<bench::GridRow> row = bench::measure_grid(threads, plan.task.length.repeats, calibration);
         if (!row) return fail(exit_code::fault, row.error().message);
         rows.push_back(*row);
     }

@@ -23,7 +23,7 @@ double Entrainment::entrain(Solver& solver) {
     if (bed_.empty()) return 0;
     const GridGeometry& g = solver.geometry();
     double sum = 0;
-    solver.for_each_active_row_in_turn([&](const ActiveRow& row) {
+    solver.for_each_active_row_in_turn([&](const CellRow& row) {
         for (int k = 0; k < row.last - row.first; ++k) {
             const std::size_t cell = g.index(row.first + k, row.row);
             if (bed_.material_at[cell] == 0 || !(row.depth[k] > 0)) continue;

@@ -108,7 +108,7 @@ void InternalFriction::resist(Solver& solver) {
     const Stress stress(solver, static_cast<float>(std::sqrt(2.0) * coefficient_ * (1 - everywhere)),
                         static_cast<float>(stable_share * grid.cell * grid.cell / step));
     for (int pass = 0; pass < passes; ++pass) {
-        solver.for_each_active_row([&](const ActiveRow& row) {
+        solver.for_each_active_row([&](const CellRow& row) {
             Traction west = stress.across({row.first - 1, row.row}, true);
             for (int k = 0; k < row.last - row.first; ++k) {
                 const Cell at{row.first + k, row.row};
@@ -121,7 +121,7 @@ void InternalFriction::resist(Solver& solver) {
                 v_[i] = row.v[k] + over_mass * (east.y - before.y + north.y - south.y) / row.depth[k];
             }
         });
-        solver.for_each_active_row_in_turn([&](const ActiveRow& row) {
+        solver.for_each_active_row_in_turn([&](const CellRow& row) {
             for (int k = 0; k < row.last - row.first; ++k) {
                 if (!(row.depth[k] > dry_depth)) continue;
                 const std::size_t i = grid.index(row.first + k, row.row);

@@ -349,14 +349,17 @@ double Solver::bytes_per_cell() const {
     return static_cast<double>(bytes) / static_cast<double>(geometry_.size());
 }
 
-ActiveRow Solver::active_row(const Segment& segment, int row_of_tile) const {
-    ActiveRow result;
-    result.row = segment.tile_row * tile_edge + row_of_tile - margin;
+CellRow Solver::active_row(const Segment& segment, int row_of_tile) const {
+    const int row = segment.tile_row * tile_edge + row_of_tile - margin;
     const int west = segment.first_tile * tile_edge - margin;
-    result.first = std::max(0, west);
-    result.last = std::min(geometry_.columns, west + segment.tiles * tile_edge);
-    if (result.row < 0 || result.row >= geometry_.rows || result.first >= result.last) return {};
-    const std::size_t i = index(result.first, result.row);
+    const int first = std::max(0, west), last = std::min(geometry_.columns, west + segment.tiles * tile_edge);
+    if (row < 0 || row >= geometry_.rows || first >= last) return {};
+    return cell_row(row, first, last);
+}
+
+CellRow Solver::cell_row(int row, int first, int last) const {
+    CellRow result{row, first, last};
+    const std::size_t i = index(first, row);
     result.depth = &depth_[i];
     result.u = &u_[i];
     result.v = &v_[i];

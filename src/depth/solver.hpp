@@ -44,8 +44,8 @@ enum class Edges {
     continued,  ///< the same as in the outermost row: for flow that differs along rows only
 };
 
-/// The state of a row of cells that may have changed in a step: columns [first, last), pointers to the first.
-struct ActiveRow {
+/// The state of cells side by side in a row: columns [first, last), pointers to the first.
+struct CellRow {
     int row = 0, first = 0, last = 0;
     const float *depth = nullptr, *u = nullptr, *v = nullptr;  ///< m, m/s
     const float *slope_x = nullptr, *slope_y = nullptr;        ///< of the ground
@@ -153,13 +153,13 @@ class Solver {
         return !structure_.empty() && structure_[index(column, row)] > 0;
     }
 
-    /// Calls f(const ActiveRow&) in parallel for the rows of what the last step may have changed.
+    /// Calls f(const CellRow&) in parallel for the rows of what the last step may have changed.
     template <class F>
     void for_each_active_row(const F& f) const {
         simd::parallel_ranges(segments_.size(), 1, [&](std::size_t first, std::size_t last) {
             for (std::size_t s = first; s < last; ++s) {
                 for (int k = 0; k < tile_edge; ++k) {
-                    const ActiveRow row = active_row(segments_[s], k);
+                    const CellRow row = active_row(segments_[s], k);
                     if (row.first < row.last) f(row);
                 }
             }
@@ -171,11 +171,14 @@ class Solver {
     void for_each_active_row_in_turn(const F& f) const {
         for (const Segment& segment : segments_) {
             for (int k = 0; k < tile_edge; ++k) {
-                const ActiveRow row = active_row(segment, k);
+                const CellRow row = active_row(segment, k);
                 if (row.first < row.last) f(row);
             }
         }
     }
+
+    /// The state of a whole row.
+    [[nodiscard]] CellRow row(int row) const { return cell_row(row, 0, geometry_.columns); }
 
     /// Hash of time, depths and velocities of all cells, and of the pore pressure that debris carries.
     [[nodiscard]] std::uint64_t hash() const;
@@ -214,7 +217,8 @@ class Solver {
     static void fail(Archive& archive) {
         if constexpr (Archive::reading) archive.fail();
     }
-    [[nodiscard]] ActiveRow active_row(const Segment& segment, int row_of_tile) const;
+    [[nodiscard]] CellRow active_row(const Segment& segment, int row_of_tile) const;
+    [[nodiscard]] CellRow cell_row(int row, int first, int last) const;
     /// What debris of a cell or of an inflow starts with.
     struct Start {
         double pore_pressure_ratio = 0, solid_fraction = 0;

@@ -116,7 +116,6 @@ void GridObserver::measure_cells(const depth::Solver& solver) {
     const auto time = static_cast<float>(solver.time());
     const GridGeometry& g = solver.geometry();
     const auto measure = [&](std::size_t cell, float depth, float speed) {
-        if (!(depth > thinnest)) return;
         peak_depth_.values[cell] = std::max(peak_depth_.values[cell], depth);
         peak_speed_.values[cell] = std::max(peak_speed_.values[cell], speed);
         if (depth > arrives && std::isnan(arrival_time_.values[cell])) {
@@ -127,18 +126,15 @@ void GridObserver::measure_cells(const depth::Solver& solver) {
         }
     };
     if (solver.steps() == 0 || !solver.active()) {
-        for (int row = 0; row < g.rows; ++row) {
-            for (int column = 0; column < g.columns; ++column) {
-                measure(g.index(column, row), solver.depth_at(column, row), 0);
-            }
+        for (int r = 0; r < g.rows; ++r) {
+            const depth::CellRow row = solver.row(r);
+            for_each_deeper(row, thinnest, [&](int k) { measure(g.index(k, r), row.depth[k], 0); });
         }
         return;
     }
-    solver.for_each_active_row([&](const depth::ActiveRow& row) {
-        const std::size_t first = g.index(row.first, row.row);
-        for (int k = 0; k < row.last - row.first; ++k) {
-            measure(first + static_cast<std::size_t>(k), row.depth[k], speed_of(row, k));
-        }
+    solver.for_each_active_row([&](const depth::CellRow& row) {
+        for_each_deeper(row, thinnest,
+                        [&](int k) { measure(g.index(row.first + k, row.row), row.depth[k], speed_of(row, k)); });
     });
 }
 
@@ -169,10 +165,12 @@ void GridObserver::after_step(const depth::Solver& solver, double held, double s
     read_gauges(solver, row);
     if (!row) return;
     const GridGeometry& g = solver.geometry();
-    for (std::size_t cell = 0; cell < g.size(); ++cell) {
-        if (!std::isnan(arrival_time_.values[cell]) && !(chainage_[cell] <= front_)) {
-            front_ = std::isnan(chainage_[cell]) ? front_ : double{chainage_[cell]};
-        }
+    for (int r = 0; r < g.rows; ++r) {
+        const float* arrival = &arrival_time_.values[g.index(0, r)];
+        const float* chainage = &chainage_[g.index(0, r)];
+        for_each_of_few(
+            g.columns, [&](int k) { return !std::isnan(arrival[k]); },
+            [&](int k) { front_ = std::fmax(front_, chainage[k]); });
     }
     add_row(solver, held, steps_per_second);
 }
@@ -180,11 +178,8 @@ void GridObserver::after_step(const depth::Solver& solver, double held, double s
 double GridObserver::fastest(const depth::Solver& solver) const {
     const auto thinnest = static_cast<float>(thinnest_depth());
     float fastest = 0;
-    solver.for_each_active_row_in_turn([&](const depth::ActiveRow& row) {
-        for (int k = 0; k < row.last - row.first; ++k) {
-            if (row.depth[k] < thinnest) continue;
-            fastest = std::max(fastest, speed_of(row, k));
-        }
+    solver.for_each_active_row_in_turn([&](const depth::CellRow& row) {
+        for_each_deeper(row, thinnest, [&](int k) { fastest = std::max(fastest, speed_of(row, k)); });
     });
     return fastest;
 }
@@ -196,14 +191,13 @@ double GridObserver::thinnest_depth() const {
 MapAccumulator::Present GridObserver::present(const depth::Solver& solver) const {
     const GridGeometry& g = solver.geometry();
     int west = g.columns, east = -1, south = g.rows, north = -1;
-    for (int row = 0; row < g.rows; ++row) {
-        for (int column = 0; column < g.columns; ++column) {
-            if (!(solver.depth_at(column, row) > 0)) continue;
+    for (int r = 0; r < g.rows; ++r) {
+        for_each_deeper(solver.row(r), 0, [&](int column) {
             west = std::min(west, column);
             east = std::max(east, column);
-            south = std::min(south, row);
-            north = row;
-        }
+            south = std::min(south, r);
+            north = r;
+        });
     }
     MapAccumulator::Present present;
     if (east < 0) return present;
@@ -212,14 +206,13 @@ MapAccumulator::Present GridObserver::present(const depth::Solver& solver) const
     const GridGeometry part{g.x_min + west * g.cell, g.y_min + south * g.cell, g.cell, east - west + 1,
                             north - south + 1};
     present.depth = present.speed = Grid<float>(part);
-    for (int row = south; row <= north; ++row) {
-        for (int column = west; column <= east; ++column) {
-            const float depth = solver.depth_at(column, row);
-            if (!(depth > 0)) continue;
-            present.depth.at(column - west, row - south) = depth;
-            if (depth < thinnest_depth()) continue;
-            present.speed.at(column - west, row - south) = speed_of(solver, column, row);
-        }
+    for (int r = south; r <= north; ++r) {
+        const depth::CellRow row = solver.row(r);
+        for_each_deeper(row, 0, [&](int column) {
+            present.depth.at(column - west, r - south) = row.depth[column];
+            if (row.depth[column] < thinnest_depth()) return;
+            present.speed.at(column - west, r - south) = speed_of(row, column);
+        });
     }
     return present;
 }
@@ -227,12 +220,11 @@ MapAccumulator::Present GridObserver::present(const depth::Solver& solver) const
 double GridObserver::volume_faster_than(const depth::Solver& solver, double limit) const {
     const GridGeometry& g = solver.geometry();
     double depth = 0;
-    for (int row = 0; row < g.rows; ++row) {
-        for (int column = 0; column < g.columns; ++column) {
-            if (!(solver.depth_at(column, row) > 0)) continue;
-            const double speed = speed_of(solver, column, row);
-            if (speed >= limit) depth += solver.depth_at(column, row);
-        }
+    for (int r = 0; r < g.rows; ++r) {
+        const depth::CellRow row = solver.row(r);
+        for_each_deeper(row, 0, [&](int column) {
+            if (speed_of(row, column) >= limit) depth += row.depth[column];
+        });
     }
     return depth * g.cell * g.cell;
 }
@@ -242,20 +234,20 @@ TimeSample GridObserver::sample(const depth::Solver& solver, double held, double
     const GridGeometry& g = solver.geometry();
     const double area = g.cell * g.cell;
     double front = never;
-    for (int row = 0; row < g.rows; ++row) {
-        for (int column = 0; column < g.columns; ++column) {
-            const double depth = solver.depth_at(column, row);
-            if (!(depth > 0)) continue;
-            if (depth > outputs_.arrival_depth) front = std::fmax(front, chainage_[g.index(column, row)]);
-            const double speed = speed_of(solver, column, row);
+    for (int r = 0; r < g.rows; ++r) {
+        const depth::CellRow row = solver.row(r);
+        for_each_deeper(row, 0, [&](int column) {
+            const double depth = row.depth[column];
+            if (depth > outputs_.arrival_depth) front = std::fmax(front, chainage_[g.index(column, r)]);
+            const double speed = speed_of(row, column);
             const double volume = depth * area;
             (speed < outputs_.deposited_speed ? s.volume_deposited : s.volume_moving) += volume;
             s.kinetic_energy += density_ * volume * speed * speed / 2;
             s.momentum += density_ * volume * speed;
             s.potential_energy += density_ * volume * solver.material().gravity *
-                                  (solver.bed_at(column, row) + depth / 2 + solver.height_at(column, row));
+                                  (solver.bed_at(column, r) + depth / 2 + solver.height_at(column, r));
             s.largest_speed = std::max(s.largest_speed, speed);
-        }
+        });
     }
     s.time = solver.time();
     s.volume_held = held;

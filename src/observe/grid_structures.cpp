@@ -239,18 +239,18 @@ std::vector<DebrisColumn> GridStructures::columns_of(const depth::Solver& solver
     };
     std::vector<DebrisColumn> columns;
     for (int row = 0; row < grid_.rows; ++row) {
-        for (int column = 0; column < grid_.columns; ++column) {
+        for_each_deeper(solver.row(row), 0, [&](int column) {
+            if (own(column, row)) return;
             const double depth = solver.depth_at(column, row);
-            if (!(depth > 0) || own(column, row)) continue;
             const BarrierLine::Place place = barrier.line.place_of(local_centre(column, row));
-            if (place.side != side) continue;
+            if (place.side != side) return;
             const bool at_face = place.distance < barrier.line.half_thickness() + grid_.cell || own(column - 1, row) ||
                                  own(column + 1, row) || own(column, row - 1) || own(column, row + 1);
             const double bed = solver.bed_at(column, row);
             const double speed = speed_of(solver, column, row);
             columns.push_back({column, row, depth * grid_.cell * grid_.cell, bed, bed + depth,
                                speed < outputs_.deposited_speed, at_face});
-        }
+        });
     }
     return columns;
 }

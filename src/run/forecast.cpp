@@ -168,7 +168,7 @@ Outlook outlook_of(const depth::Solver& solver, const sim::Model& model, const s
     Outlook outlook;
     double awake = 0, moving = 0;  // m, of all cells
     const GridGeometry& geometry = solver.geometry();
-    solver.for_each_active_row_in_turn([&](const depth::ActiveRow& row) {
+    solver.for_each_active_row_in_turn([&](const depth::CellRow& row) {
         for (int k = 0; k < row.last - row.first; ++k) {
             if (row.depth[k] <= 0) continue;
             cells.push_back({geometry.centre(row.first + k, row.row), row.depth[k], row.u[k], row.v[k]});

@@ -11,6 +11,7 @@
 #include <fmt/format.h>
 
 #include "core/number_or_null.hpp"
+#include "observe/grid_flow.hpp"
 #include "sim/fault.hpp"
 
 namespace talus::run {
@@ -77,11 +78,11 @@ std::string state_table(const GridState& state, const GridGeometry& grid) {
 }  // namespace
 
 GridState::GridState(const depth::Solver& solver) : time(solver.time()), step(solver.steps()) {
-    for (int row = 0; row < solver.geometry().rows; ++row) {
-        for (int column = 0; column < solver.geometry().columns; ++column) {
-            const float depth = solver.depth_at(column, row);
-            if (depth > 0) cells.push_back({column, row, depth, solver.u_at(column, row), solver.v_at(column, row)});
-        }
+    for (int r = 0; r < solver.geometry().rows; ++r) {
+        const depth::CellRow row = solver.row(r);
+        observe::for_each_deeper(row, 0, [&](int column) {
+            cells.push_back({column, r, row.depth[column], row.u[column], row.v[column]});
+        });
     }
 }
 

@@ -1,4 +1,5 @@
-// Fails when the solver has become slower, relative to a calibration loop, than a committed baseline says.
+// Fails when a solver, or all around it, has become slower, relative to a calibration loop, than a committed baseline
+// says.
 //
 //   performance_guard BASELINE            0: as fast as it was; 1: slower; 77: no baseline for this instruction set
 //   performance_guard BASELINE --remake   measures three times and replaces what the baseline says of this instruction
@@ -19,6 +20,8 @@
 
 #include "bench/baseline.hpp"
 #include "bench/calibration.hpp"
+#include "bench/command_to_map.hpp"
+#include "bench/grid.hpp"
 #include "bench/measure.hpp"
 #include "bench/scenes.hpp"
 #include "bench/table.hpp"
@@ -32,7 +35,8 @@ namespace {
 constexpr double slowest_share = 0.75;  // of the baseline's rate
 constexpr int skipped = 77;
 
-/// What is guarded: one thread, where a busy neighbour does least harm, and once two.
+/// Steps of particles: on one thread, where a busy neighbour does least harm, and once on two. The depth-averaged model
+/// is measured on the same numbers of threads, and what a user waits for besides the model on one.
 struct Guarded {
     const char* scene;
     int particles;
@@ -54,15 +58,15 @@ void print(const std::string& text) {
     (void)std::fflush(stdout);
 }
 
-bool fits_here(const Guarded& g) {
-    return static_cast<unsigned>(g.threads) <= std::max(1U, std::thread::hardware_concurrency());
+bool fits_here(int threads) {
+    return static_cast<unsigned>(threads) <= std::max(1U, std::thread::hardware_concurrency());
 }
 
 /// Rates of all that fits on this machine.
 Result<Rates> measure_all(Calibration& calibration, const std::string& builtin_scene) {
     Rates rates;
     for (const Guarded& g : guarded) {
-        if (!fits_here(g)) {
+        if (!fits_here(g.threads)) {
             print(fmt::format("not measured, as this machine has fewer cores: {} on {} threads\n", g.scene, g.threads));
             continue;
         }
@@ -77,6 +81,15 @@ Result<Rates> measure_all(Calibration& calibration, const std::string& builtin_s
         if (!row) return row.error();
         rates[row_name(*row)] = row->relative_rate;
     }
+    for (const int threads : {1, 2}) {
+        if (!fits_here(threads)) continue;
+        const Result<GridRow> row = measure_grid(threads, 15, calibration);
+        if (!row) return row.error();
+        rates[fmt::format("depth-averaged, {} thread{}", threads, threads == 1 ? "" : "s")] = row->relative_rate;
+    }
+    const Result<CommandToMap> waited = measure_command_to_map(builtin_scene, 5, calibration);
+    if (!waited) return waited.error();
+    rates["command to map without the model, 1 thread"] = waited->relative_rate;
     return rates;
 }
 
@@ -100,7 +113,7 @@ int check(const Rates& baseline, Calibration& calibration, const std::string& bu
         if (!rates) return fail(rates.error().message);
         measured = better_of(measured, *rates);
         for (const Guarded& g : guarded) {
-            if (!fits_here(g))
+            if (!fits_here(g.threads))
                 std::erase_if(expected,
                               [&](const auto& e) { return e.first.ends_with(fmt::format(", {} threads", g.threads)); });
         }
