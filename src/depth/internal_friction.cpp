@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "depth/formulas.hpp"
+#include "simd/parallel.hpp"
 
 namespace talus::depth {
 namespace {
@@ -15,88 +16,124 @@ constexpr float stable_share = 0.15F;
 /// Converging debris is squeezed at most so much more than debris under its own weight, 1 / this.
 constexpr float least_relief = 0.2F;
 
-struct Cell {
-    int column = 0, row = 0;
-    [[nodiscard]] Cell east(int cells = 1) const { return {column + cells, row}; }
-    [[nodiscard]] Cell north(int cells = 1) const { return {column, row + cells}; }
-};
-
-/// On the debris before a face, from that behind it, per density and length of the face, m3/s2.
-struct Traction {
-    float x = 0, y = 0;
-};
-
+/// The debris and its neighbours. A cell touches another where both hold debris and both, or neither, are built.
 class Stress {
   public:
     /// `limit`: of its norm, over the pressure, or that of the grains where r_u differs; `stiffest`: stress over strain
     /// rate and depth, m2/s.
-    Stress(const Solver& solver, float limit, float stiffest)
+    Stress(const Solver& solver, InternalFriction::Fields& fields, float limit, float stiffest)
         : solver_(solver),
+          fields_(fields),
+          grid_(solver.geometry()),
           gravity_(static_cast<float>(solver.material().gravity)),
           inverse_cell_(static_cast<float>(1 / solver.geometry().cell)),
           limit_(limit),
           stiffest_(stiffest) {}
 
-    /// Across the face between a cell and its neighbour to the east, or to the north.
-    [[nodiscard]] Traction across(const Cell& a, bool east) const {
-        const Cell b = east ? a.east() : a.north();
-        if (!touch(a, b)) return {};
-        const bool normal = east, along = !east;  // whether it is u
-        const float stretch = (velocity(b, normal) - velocity(a, normal)) * inverse_cell_;
-        const float aside = (gradient(a, along, !east) + gradient(b, along, !east)) / 2;
-        const float turn = (velocity(b, along) - velocity(a, along)) * inverse_cell_;
-        const float shear = (turn + (gradient(a, normal, !east) + gradient(b, normal, !east)) / 2) / 2;
-        const float rise = -(stretch + aside);  // volume stays
-        const float rate = std::sqrt(stretch * stretch + aside * aside + rise * rise + 2 * shear * shear);
-        if (!(rate > 0)) return {};
-        const float limit = solver_.carries_pore_pressure() ? limit_ * (1 - (ratio(a) + ratio(b)) / 2) : limit_;
-        const float pressure = std::min(weight(a), weight(b)) / std::max(least_relief, 1 - limit * rise / rate);
-        const float over_rate = std::min(limit * pressure / rate, stiffest_ * std::min(depth(a), depth(b)));
-        const float pull = over_rate * (stretch - rise), drag = over_rate * shear;
-        return east ? Traction{pull, drag} : Traction{drag, pull};
+    /// Pressure of debris under its own weight, summed over the depth, per density, m3/s2.
+    void find_weight(int column, int row) {
+        const float h = depth(column, row);
+        const float x = solver_.slope_x_at(column, row), y = solver_.slope_y_at(column, row);
+        fields_.weight[grid_.index(column, row)] = gravity_ * h * h / (2 * (1 + x * x + y * y));
+    }
+    void find_gradients(int column, int row) {
+        const Difference east = difference(column, row, 1, 0), west = difference(column - 1, row, 1, 0);
+        const Difference north = difference(column, row, 0, 1), south = difference(column, row - 1, 0, 1);
+        const std::size_t i = grid_.index(column, row);
+        fields_.u_east[i] = mean(west.u, east.u, west.cells + east.cells);
+        fields_.v_east[i] = mean(west.v, east.v, west.cells + east.cells);
+        fields_.u_north[i] = mean(south.u, north.u, south.cells + north.cells);
+        fields_.v_north[i] = mean(south.v, north.v, south.cells + north.cells);
+    }
+    /// Across the faces to the east and to the north of a cell.
+    void find_tractions(int column, int row) {
+        const std::size_t i = grid_.index(column, row);
+        const std::vector<float>&u_east = fields_.u_east, &v_east = fields_.v_east;
+        const std::vector<float>&u_north = fields_.u_north, &v_north = fields_.v_north;
+        fields_.pull_east[i] = fields_.drag_east[i] = fields_.pull_north[i] = fields_.drag_north[i] = 0;
+        if (touch(column, row, 1, 0)) {
+            const std::size_t j = i + 1;
+            const float stretch = (solver_.u_at(column + 1, row) - solver_.u_at(column, row)) * inverse_cell_;
+            const float turn = (solver_.v_at(column + 1, row) - solver_.v_at(column, row)) * inverse_cell_;
+            const Traction t = across(column, row, 1, 0, stretch, (v_north[i] + v_north[j]) / 2,
+                                      (turn + (u_north[i] + u_north[j]) / 2) / 2);
+            fields_.pull_east[i] = t.pull;
+            fields_.drag_east[i] = t.drag;
+        }
+        if (touch(column, row, 0, 1)) {
+            const std::size_t j = i + static_cast<std::size_t>(grid_.columns);
+            const float stretch = (solver_.v_at(column, row + 1) - solver_.v_at(column, row)) * inverse_cell_;
+            const float turn = (solver_.u_at(column, row + 1) - solver_.u_at(column, row)) * inverse_cell_;
+            const Traction t = across(column, row, 0, 1, stretch, (u_east[i] + u_east[j]) / 2,
+                                      (turn + (v_east[i] + v_east[j]) / 2) / 2);
+            fields_.pull_north[i] = t.pull;
+            fields_.drag_north[i] = t.drag;
+        }
     }
 
   private:
-    [[nodiscard]] float depth(const Cell& at) const { return solver_.depth_at(at.column, at.row); }
-    [[nodiscard]] float ratio(const Cell& at) const { return solver_.pore_pressure_ratio_at(at.column, at.row); }
-    [[nodiscard]] float velocity(const Cell& at, bool u) const {
-        return u ? solver_.u_at(at.column, at.row) : solver_.v_at(at.column, at.row);
+    /// On the debris before a face, from that behind it, per density and length of the face, m3/s2: along the normal of
+    /// the face and along the face.
+    struct Traction {
+        float pull = 0, drag = 0;
+    };
+    /// Of velocities, to the next cell; 0 where that does not touch.
+    struct Difference {
+        float u = 0, v = 0, cells = 0;
+    };
+
+    [[nodiscard]] float depth(int column, int row) const { return solver_.depth_at(column, row); }
+    [[nodiscard]] bool touch(int column, int row, int east, int north) const {
+        return depth(column, row) > dry_depth && depth(column + east, row + north) > dry_depth &&
+               solver_.built(column, row) == solver_.built(column + east, row + north);
     }
-    [[nodiscard]] bool touch(const Cell& a, const Cell& b) const {
-        return depth(a) > dry_depth && depth(b) > dry_depth &&
-               solver_.built(a.column, a.row) == solver_.built(b.column, b.row);
+    [[nodiscard]] Difference difference(int column, int row, int east, int north) const {
+        if (!touch(column, row, east, north)) return {};
+        return {solver_.u_at(column + east, row + north) - solver_.u_at(column, row),
+                solver_.v_at(column + east, row + north) - solver_.v_at(column, row), 1};
     }
-    /// Of u or v eastward or northward, from the neighbours that touch.
-    [[nodiscard]] float gradient(const Cell& at, bool u, bool eastward) const {
-        const Cell before = eastward ? at.east(-1) : at.north(-1), after = eastward ? at.east() : at.north();
-        float change = 0, cells = 0;
-        if (touch(at, before)) {
-            change += velocity(at, u) - velocity(before, u);
-            ++cells;
-        }
-        if (touch(at, after)) {
-            change += velocity(after, u) - velocity(at, u);
-            ++cells;
-        }
-        return cells > 0 ? change * inverse_cell_ / cells : 0;
+    [[nodiscard]] float mean(float before, float after, float cells) const {
+        return cells > 0 ? (before + after) * inverse_cell_ / cells : 0;
     }
-    /// Pressure of debris under its own weight, summed over the depth, per density, m3/s2.
-    [[nodiscard]] float weight(const Cell& at) const {
-        const float h = depth(at);
-        const float x = solver_.slope_x_at(at.column, at.row), y = solver_.slope_y_at(at.column, at.row);
-        return gravity_ * h * h / (2 * (1 + x * x + y * y));
+    [[nodiscard]] Traction across(int column, int row, int east, int north, float stretch, float aside,
+                                  float shear) const {
+        const float rise = -(stretch + aside);  // volume stays
+        const float rate = std::sqrt(stretch * stretch + aside * aside + rise * rise + 2 * shear * shear);
+        if (!(rate > 0)) return {};
+        const float here = solver_.carries_pore_pressure() ? solver_.pore_pressure_ratio_at(column, row) : 0;
+        const float there =
+            solver_.carries_pore_pressure() ? solver_.pore_pressure_ratio_at(column + east, row + north) : 0;
+        const float limit = limit_ * (1 - (here + there) / 2);
+        const float weight =
+            std::min(fields_.weight[grid_.index(column, row)], fields_.weight[grid_.index(column + east, row + north)]);
+        const float pressure = weight / std::max(least_relief, 1 - limit * rise / rate);
+        const float thinner = std::min(depth(column, row), depth(column + east, row + north));
+        const float over_rate = std::min(limit * pressure / rate, stiffest_ * thinner);
+        return {over_rate * (stretch - rise), over_rate * shear};
     }
 
     const Solver& solver_;
+    InternalFriction::Fields& fields_;
+    const GridGeometry& grid_;
     float gravity_, inverse_cell_, limit_, stiffest_;
 };
+
+/// Calls f(column, row) in parallel for all cells with debris.
+template <class F>
+void for_each_wet(const Solver& solver, const F& f) {
+    simd::parallel_ranges(static_cast<std::size_t>(solver.geometry().rows), 8,
+                          [&](std::size_t first, std::size_t last) {
+                              for (auto r = static_cast<int>(first); r < static_cast<int>(last); ++r) {
+                                  for_each_deeper(solver.row(r), dry_depth, [&](int column) { f(column, r); });
+                              }
+                          });
+}
 
 }  // namespace
 
 InternalFriction::InternalFriction(const Solver& solver, double coefficient) : coefficient_(coefficient) {
     if (!(coefficient > 0)) return;
-    u_.resize(solver.geometry().size());
-    v_.resize(u_.size());
+    for (std::vector<float>* field : fields_.all()) field->resize(solver.geometry().size());
 }
 
 void InternalFriction::resist(Solver& solver) {
@@ -105,29 +142,34 @@ void InternalFriction::resist(Solver& solver) {
     const double step = solver.time_step() / passes;
     const float over_mass = static_cast<float>(step / grid.cell);
     const double everywhere = solver.carries_pore_pressure() ? 0 : solver.material().pore_pressure_ratio;
-    const Stress stress(solver, static_cast<float>(std::sqrt(2.0) * coefficient_ * (1 - everywhere)),
-                        static_cast<float>(stable_share * grid.cell * grid.cell / step));
+    Stress stress(solver, fields_, static_cast<float>(std::sqrt(2.0) * coefficient_ * (1 - everywhere)),
+                  static_cast<float>(stable_share * grid.cell * grid.cell / step));
+    for_each_wet(solver, [&](int column, int row) { stress.find_weight(column, row); });
     for (int pass = 0; pass < passes; ++pass) {
+        for_each_wet(solver, [&](int column, int row) { stress.find_gradients(column, row); });
+        for_each_wet(solver, [&](int column, int row) { stress.find_tractions(column, row); });
         solver.for_each_active_row([&](const CellRow& row) {
-            Traction west = stress.across({row.first - 1, row.row}, true);
-            for (int k = 0; k < row.last - row.first; ++k) {
-                const Cell at{row.first + k, row.row};
-                const Traction before = west, east = stress.across(at, true);
-                west = east;
-                if (!(row.depth[k] > dry_depth)) continue;
-                const Traction north = stress.across(at, false), south = stress.across(at.north(-1), false);
-                const std::size_t i = grid.index(at.column, at.row);
-                u_[i] = row.u[k] + over_mass * (east.x - before.x + north.x - south.x) / row.depth[k];
-                v_[i] = row.v[k] + over_mass * (east.y - before.y + north.y - south.y) / row.depth[k];
-            }
+            const auto up = static_cast<std::size_t>(grid.columns);
+            for_each_deeper(row, dry_depth, [&](int k) {
+                const int column = row.first + k;
+                const std::size_t i = grid.index(column, row.row);
+                const bool west = solver.depth_at(column - 1, row.row) > dry_depth;
+                const bool south = solver.depth_at(column, row.row - 1) > dry_depth;
+                const Fields& f = fields_;
+                const float x = f.pull_east[i] - (west ? f.pull_east[i - 1] : 0) + f.drag_north[i] -
+                                (south ? f.drag_north[i - up] : 0);
+                const float y = f.drag_east[i] - (west ? f.drag_east[i - 1] : 0) + f.pull_north[i] -
+                                (south ? f.pull_north[i - up] : 0);
+                fields_.u[i] = row.u[k] + over_mass * x / row.depth[k];
+                fields_.v[i] = row.v[k] + over_mass * y / row.depth[k];
+            });
         });
         solver.for_each_active_row_in_turn([&](const CellRow& row) {
-            for (int k = 0; k < row.last - row.first; ++k) {
-                if (!(row.depth[k] > dry_depth)) continue;
+            for_each_deeper(row, dry_depth, [&](int k) {
                 const std::size_t i = grid.index(row.first + k, row.row);
-                if (u_[i] == row.u[k] && v_[i] == row.v[k]) continue;
-                solver.set_velocity(row.first + k, row.row, static_cast<double>(u_[i]), static_cast<double>(v_[i]));
-            }
+                if (fields_.u[i] == row.u[k] && fields_.v[i] == row.v[k]) return;
+                solver.set_velocity(row.first + k, row.row, fields_.u[i], fields_.v[i]);
+            });
         });
     }
 }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <vector>
 
 #include "depth/solver.hpp"
@@ -17,9 +18,22 @@ class InternalFriction {
 
     void resist(Solver& solver);
 
+    /// By cell of the grid; only those of cells with debris are in use.
+    struct Fields {
+        std::vector<float> weight;                            ///< m3/s2, pressure summed over the depth, per density
+        std::vector<float> u_east, v_east, u_north, v_north;  ///< 1/s, gradients
+        std::vector<float> pull_east, drag_east;              ///< m3/s2, across the eastern face: along its normal,
+        std::vector<float> pull_north, drag_north;            ///< along the face; and across the northern one
+        std::vector<float> u, v;                              ///< m/s, after a pass
+        [[nodiscard]] auto all() {
+            return std::array{&weight,    &u_east,     &v_east,     &u_north, &v_north, &pull_east,
+                              &drag_east, &pull_north, &drag_north, &u,       &v};
+        }
+    };
+
   private:
     double coefficient_;
-    std::vector<float> u_, v_;  ///< m/s, by cell of the grid: after a pass
+    Fields fields_;
 };
 
 }  // namespace talus::depth

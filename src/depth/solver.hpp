@@ -9,6 +9,7 @@
 
 #include "core/grid.hpp"
 #include "core/result.hpp"
+#include "depth/cell_row.hpp"
 #include "depth/stages.hpp"
 #include "simd/parallel.hpp"
 
@@ -42,14 +43,6 @@ struct GroundValues {
 enum class Edges {
     open,       ///< as at its other edges: unknown ground, over which debris leaves
     continued,  ///< the same as in the outermost row: for flow that differs along rows only
-};
-
-/// The state of cells side by side in a row: columns [first, last), pointers to the first.
-struct CellRow {
-    int row = 0, first = 0, last = 0;
-    const float *depth = nullptr, *u = nullptr, *v = nullptr;  ///< m, m/s
-    const float *slope_x = nullptr, *slope_y = nullptr;        ///< of the ground
-    const float* climb = nullptr;                              ///< m/s, see Solver::climb_at(); null: 0
 };
 
 /// A face of the grid: east of a cell, or north of it.

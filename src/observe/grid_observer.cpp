@@ -128,13 +128,13 @@ void GridObserver::measure_cells(const depth::Solver& solver) {
     if (solver.steps() == 0 || !solver.active()) {
         for (int r = 0; r < g.rows; ++r) {
             const depth::CellRow row = solver.row(r);
-            for_each_deeper(row, thinnest, [&](int k) { measure(g.index(k, r), row.depth[k], 0); });
+            depth::for_each_deeper(row, thinnest, [&](int k) { measure(g.index(k, r), row.depth[k], 0); });
         }
         return;
     }
     solver.for_each_active_row([&](const depth::CellRow& row) {
-        for_each_deeper(row, thinnest,
-                        [&](int k) { measure(g.index(row.first + k, row.row), row.depth[k], speed_of(row, k)); });
+        depth::for_each_deeper(
+            row, thinnest, [&](int k) { measure(g.index(row.first + k, row.row), row.depth[k], speed_of(row, k)); });
     });
 }
 
@@ -168,7 +168,7 @@ void GridObserver::after_step(const depth::Solver& solver, double held, double s
     for (int r = 0; r < g.rows; ++r) {
         const float* arrival = &arrival_time_.values[g.index(0, r)];
         const float* chainage = &chainage_[g.index(0, r)];
-        for_each_of_few(
+        depth::for_each_of_few(
             g.columns, [&](int k) { return !std::isnan(arrival[k]); },
             [&](int k) { front_ = std::fmax(front_, chainage[k]); });
     }
@@ -179,7 +179,7 @@ double GridObserver::fastest(const depth::Solver& solver) const {
     const auto thinnest = static_cast<float>(thinnest_depth());
     float fastest = 0;
     solver.for_each_active_row_in_turn([&](const depth::CellRow& row) {
-        for_each_deeper(row, thinnest, [&](int k) { fastest = std::max(fastest, speed_of(row, k)); });
+        depth::for_each_deeper(row, thinnest, [&](int k) { fastest = std::max(fastest, speed_of(row, k)); });
     });
     return fastest;
 }
@@ -192,7 +192,7 @@ MapAccumulator::Present GridObserver::present(const depth::Solver& solver) const
     const GridGeometry& g = solver.geometry();
     int west = g.columns, east = -1, south = g.rows, north = -1;
     for (int r = 0; r < g.rows; ++r) {
-        for_each_deeper(solver.row(r), 0, [&](int column) {
+        depth::for_each_deeper(solver.row(r), 0, [&](int column) {
             west = std::min(west, column);
             east = std::max(east, column);
             south = std::min(south, r);
@@ -208,7 +208,7 @@ MapAccumulator::Present GridObserver::present(const depth::Solver& solver) const
     present.depth = present.speed = Grid<float>(part);
     for (int r = south; r <= north; ++r) {
         const depth::CellRow row = solver.row(r);
-        for_each_deeper(row, 0, [&](int column) {
+        depth::for_each_deeper(row, 0, [&](int column) {
             present.depth.at(column - west, r - south) = row.depth[column];
             if (row.depth[column] < thinnest_depth()) return;
             present.speed.at(column - west, r - south) = speed_of(row, column);
@@ -222,7 +222,7 @@ double GridObserver::volume_faster_than(const depth::Solver& solver, double limi
     double depth = 0;
     for (int r = 0; r < g.rows; ++r) {
         const depth::CellRow row = solver.row(r);
-        for_each_deeper(row, 0, [&](int column) {
+        depth::for_each_deeper(row, 0, [&](int column) {
             if (speed_of(row, column) >= limit) depth += row.depth[column];
         });
     }
@@ -236,7 +236,7 @@ TimeSample GridObserver::sample(const depth::Solver& solver, double held, double
     double front = never;
     for (int r = 0; r < g.rows; ++r) {
         const depth::CellRow row = solver.row(r);
-        for_each_deeper(row, 0, [&](int column) {
+        depth::for_each_deeper(row, 0, [&](int column) {
             const double depth = row.depth[column];
             if (depth > outputs_.arrival_depth) front = std::fmax(front, chainage_[g.index(column, r)]);
             const double speed = speed_of(row, column);

@@ -239,7 +239,7 @@ std::vector<DebrisColumn> GridStructures::columns_of(const depth::Solver& solver
     };
     std::vector<DebrisColumn> columns;
     for (int row = 0; row < grid_.rows; ++row) {
-        for_each_deeper(solver.row(row), 0, [&](int column) {
+        depth::for_each_deeper(solver.row(row), 0, [&](int column) {
             if (own(column, row)) return;
             const double depth = solver.depth_at(column, row);
             const BarrierLine::Place place = barrier.line.place_of(local_centre(column, row));

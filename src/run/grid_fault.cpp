@@ -11,7 +11,6 @@
 #include <fmt/format.h>
 
 #include "core/number_or_null.hpp"
-#include "observe/grid_flow.hpp"
 #include "sim/fault.hpp"
 
 namespace talus::run {
@@ -80,7 +79,7 @@ std::string state_table(const GridState& state, const GridGeometry& grid) {
 GridState::GridState(const depth::Solver& solver) : time(solver.time()), step(solver.steps()) {
     for (int r = 0; r < solver.geometry().rows; ++r) {
         const depth::CellRow row = solver.row(r);
-        observe::for_each_deeper(row, 0, [&](int column) {
+        depth::for_each_deeper(row, 0, [&](int column) {
             cells.push_back({column, r, row.depth[column], row.u[column], row.v[column]});
         });
     }
