@@ -225,7 +225,8 @@ void BuildingSolids::fill_bins() {
     for (const Solid& solid : solids_) {
         extents.push_back(Extent{solid.x_min, solid.y_min, solid.x_max, solid.y_max}.grown(range_));
     }
-    bins_ = PlanBins(extents, std::max(range_, 2.0));
+    constexpr double smallest_bin = 0.25;  // m: what a bin holds beyond its extents costs every particle there a look
+    bins_ = PlanBins(extents, std::max(range_, smallest_bin));
 }
 
 template <class Real>
