@@ -136,7 +136,7 @@ std::string front_text(const scene::Scene& scene, const observe::Observation& se
 std::string summary_text(const scene::Scene& scene, const run::RunResult& result,
                          const std::vector<run::Comparison>& comparisons, const std::filesystem::path& output) {
     const observe::Observation& seen = result.observation;
-    const observe::TimeSample end = seen.timeseries.empty() ? observe::TimeSample{} : seen.timeseries.back();
+    const observe::TimeSample end = seen.at_end();
     std::string text = scene.spec.scene.title;
     const bool said = text.find("reconstruction") != std::string::npos;
     if (scene.spec.scene.reconstruction && !said) text += " (reconstruction)";
@@ -208,7 +208,7 @@ std::string summary_text(const scene::Scene& scene, const run::RunResult& result
 std::string summary_json(const scene::Scene& scene, const run::RunResult& result,
                          const std::vector<run::Comparison>& comparisons, const std::filesystem::path& output) {
     const observe::Observation& seen = result.observation;
-    const observe::TimeSample end = seen.timeseries.empty() ? observe::TimeSample{} : seen.timeseries.back();
+    const observe::TimeSample end = seen.at_end();
     auto observations = nlohmann::ordered_json::array();
     for (const params::ObservationSpec& observed : scene.spec.observations) {
         const observe::FrontSample front = front_at(seen, observed.chainage);
@@ -226,13 +226,6 @@ std::string summary_json(const scene::Scene& scene, const run::RunResult& result
                              {"first_hit_s", number_or_null<nlohmann::ordered_json>(building->first_hit_time)},
                              {"peak_impact_pressure_kPa", building->peak_impact_pressure / 1000},
                              {"peak_depth_m", building->peak_depth}});
-    }
-    auto sections = nlohmann::ordered_json::array();
-    for (const observe::DischargeRecord& r : seen.cross_sections) {
-        sections.push_back({{"name", r.section.name},
-                            {"peak_discharge_m3ps", r.peak_discharge},
-                            {"peak_discharge_time_s", number_or_null<nlohmann::ordered_json>(r.peak_time)},
-                            {"passed_m3", r.passed}});
     }
     nlohmann::ordered_json event = {
         {"event", "result"},
@@ -262,7 +255,7 @@ std::string summary_json(const scene::Scene& scene, const run::RunResult& result
         {"observations", observations},
         {"buildings_hit", buildings},
         {"structures", products::structures_json(seen)},
-        {"cross_sections", sections},
+        {"cross_sections", products::cross_sections_json(seen)},
         {"compression", result.depth_averaged() ? nlohmann::ordered_json() : products::compression_json(seen)},
     };
     event.update(products::run_out_json(seen));

@@ -9,6 +9,7 @@
 #include "core/number_or_null.hpp"
 #include "ensemble/ensemble_figures.hpp"
 #include "ensemble/predict.hpp"
+#include "observe/number_names.hpp"
 #include "report/number_text.hpp"
 #include "report/table.hpp"
 
@@ -105,9 +106,7 @@ Json results_of(const EnsembleResult& result) {
                                 {"p95", shown(95)},
                                 {"least", shown(0)},
                                 {"greatest", shown(100)},
-                                {"unit", measure.unit == "m2"    ? "m²"
-                                         : measure.unit == "deg" ? "°"
-                                                                 : measure.unit},
+                                {"unit", observe::printed_unit(measure.unit)},
                                 {"observed", observed_text(*result.scene, measure.key)}});
     }
     return rows;

@@ -128,8 +128,8 @@ std::vector<Measure> measures_of(const scene::Scene& scene) {
         list.push_back({std::string(number.key), number.title, number.unit});
     }
     list.insert(list.end(), {{"reached_area_m2", "Area reached", "m2"},
-                             {"largest_depth_m", "Largest peak depth", "m"},
-                             {"largest_speed_mps", "Largest peak speed", "m/s"},
+                             {"largest_depth_m", observe::peak_numbers[0].map.title, "m"},
+                             {"largest_speed_mps", observe::peak_numbers[1].map.title, "m/s"},
                              {"duration_s", "Time until the run ended", "s"}});
     if (!scene.buildings.empty()) list.push_back({"buildings_hit", "Buildings hit", ""});
     for (const ObservedValue& o : observed_values(scene)) list.push_back({o.key, o.name, o.unit});

@@ -247,6 +247,9 @@ struct Observation {
     Compression compression;
     /// Share of the volume that rounding may gain or lose: depths in single precision do, whole particles do not.
     double volume_rounding = 1e-9;
+
+    /// The last row of the time series.
+    [[nodiscard]] TimeSample at_end() const { return timeseries.empty() ? TimeSample{} : timeseries.back(); }
 };
 
 [[nodiscard]] Deposit measure_deposit(const Grid<float>& deposit_depth, double least_depth);

@@ -13,6 +13,7 @@
 #include "core/hash.hpp"
 #include "core/phases.hpp"
 #include "geo/versions.hpp"
+#include "observe/number_names.hpp"
 #include "params/fields.hpp"
 #include "products/results_json.hpp"
 #include "products/text_file.hpp"
@@ -136,17 +137,6 @@ Json gauges_json(const observe::Observation& observation) {
     return all;
 }
 
-Json cross_sections_json(const observe::Observation& observation) {
-    Json all = Json::array();
-    for (const observe::DischargeRecord& r : observation.cross_sections) {
-        all.push_back({{"name", r.section.name},
-                       {"peak_discharge_m3ps", r.peak_discharge},
-                       {"peak_discharge_time_s", r.peak_time},
-                       {"passed_m3", r.passed}});
-    }
-    return all;
-}
-
 Json zoom_json(const run::RunResult& result) {
     if (!result.zoom) return nullptr;
     const run::ZoomRecord& zoom = *result.zoom;
@@ -173,13 +163,9 @@ Json results(const run::RunResult& result) {
         const std::string suffix = std::string(map.unit) == "m/s" ? "mps" : map.unit;
         greatest_values[std::string(map.file) + "_" + suffix] = report::greatest(o.maps.*map.grid) * map.factor;
     }
-    Json volumes = {{"released_m3", o.volume_released}, {"entrained_m3", o.erosion.volume}};
-    if (!o.timeseries.empty()) {
-        const observe::TimeSample& last = o.timeseries.back();
-        volumes["held_m3"] = last.volume_held;
-        volumes["moving_m3"] = last.volume_moving;
-        volumes["deposited_m3"] = last.volume_deposited;
-        volumes["left_m3"] = last.volume_left;
+    Json volumes = Json::object();
+    for (const observe::NamedNumber& volume : observe::volume_numbers) {
+        volumes[std::string(volume.key.substr(sizeof "volume_" - 1))] = volume.value(o);
     }
     const observe::Hits buildings = hits_among(o.buildings, false), barriers = hits_among(o.buildings, true);
     Json all = run_out_json(o);

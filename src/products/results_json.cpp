@@ -129,6 +129,17 @@ Json structures_json(const observe::Observation& observation) {
     return list;
 }
 
+Json cross_sections_json(const observe::Observation& observation) {
+    Json all = Json::array();
+    for (const observe::DischargeRecord& r : observation.cross_sections) {
+        all.push_back({{"name", r.section.name},
+                       {"peak_discharge_m3ps", r.peak_discharge},
+                       {"peak_discharge_time_s", r.peak_time},
+                       {"passed_m3", r.passed}});
+    }
+    return all;
+}
+
 Status write_results(const Json& results, const std::filesystem::path& file) {
     // Names from attribute tables need not be valid UTF-8; the file is.
     return write_text_file(file, results.dump(1, ' ', false, Json::error_handler_t::replace) + "\n");

@@ -23,6 +23,9 @@ namespace talus::products {
 /// Structures that were hit, with their peaks, and every barrier. A value that does not exist is null.
 [[nodiscard]] nlohmann::ordered_json structures_json(const observe::Observation& observation);
 
+/// What passed every cross-section.
+[[nodiscard]] nlohmann::ordered_json cross_sections_json(const observe::Observation& observation);
+
 /// The content of a report, as the file results.json (docs/results.md). Errors name the file and the cause.
 [[nodiscard]] Status write_results(const nlohmann::ordered_json& results, const std::filesystem::path& file);
 

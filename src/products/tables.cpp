@@ -1,8 +1,8 @@
 #include <string>
 #include <string_view>
 
-#include "core/angle.hpp"
 #include "core/try.hpp"
+#include "observe/number_names.hpp"
 #include "products/csv.hpp"
 #include "products/page_files.hpp"
 #include "products/text_file.hpp"
@@ -23,45 +23,31 @@ std::string front_table(const observe::Observation& observation, std::string_vie
 
 std::string run_out_table(const observe::Observation& observation, std::string_view changed) {
     const observe::RunOut& r = observation.run_out;
-    Csv csv(
-        "run_out_along_flow_m,run_out_straight_m,at_least,toe_x_m,toe_y_m,drop_m,runout_angle_deg,travel_angle_deg,"
-        "front_chainage_m",
-        changed);
-    csv.number(r.along_flow).number(r.straight).word(r.at_least ? "yes" : "no").number(r.toe.x).number(r.toe.y);
-    csv.number(r.drop)
-        .number(r.runout_angle * degrees_per_radian)
-        .number(r.travel_angle * degrees_per_radian)
-        .number(r.front_chainage);
-    csv.end_row();
+    constexpr std::string_view before_the_toe = "run_out_straight_m";
+    std::string header;
+    for (const observe::NamedNumber& number : observe::run_out_numbers) {
+        header += std::string(number.key) + (number.key == before_the_toe ? ",at_least,toe_x_m,toe_y_m," : ",");
+    }
+    Csv csv(header + std::string(observe::front_number.key), changed);
+    for (const observe::NamedNumber& number : observe::run_out_numbers) {
+        csv.number(number.value(observation));
+        if (number.key == before_the_toe) csv.word(r.at_least ? "yes" : "no").number(r.toe.x).number(r.toe.y);
+    }
+    csv.number(observe::front_number.value(observation)).end_row();
     return csv.text();
 }
 
 std::string building_table(const scene::Scene& scene, const observe::Observation& observation,
                            std::string_view changed) {
-    Csv csv(
-        "name,hit,first_hit_time_s,peak_force_kN,peak_impact_pressure_kPa,peak_dynamic_pressure_kPa,peak_depth_m,"
-        "filter_window_s,patch_edge_m,height_m,height_assumed,kind,impulse_kNs,failed_s,overtopped_m3,first_overtopped_"
-        "s,passed_m3,"
-        "retained_m3,peak_retained_m3,peak_filling_height_m,removed_time_s,peak_speed_mps,intensity",
-        changed);
-    const report::IntensityGuideline& guideline = report::intensity_guideline(scene.spec.outputs.intensity_guideline);
+    std::string header;
+    for (const auto& [name, value] : building_row(scene, {}, nullptr)) header += (header.empty() ? "" : ",") + name;
+    Csv csv(header, changed);
     for (std::size_t i = 0; i < observation.buildings.size(); ++i) {
-        const observe::BuildingImpact& b = observation.buildings[i];
-        csv.word(b.name).word(b.hit ? "yes" : "no").number(b.first_hit_time);
-        csv.number(b.peak_force / 1e3).number(b.peak_impact_pressure / 1e3).number(b.peak_dynamic_pressure / 1e3);
-        csv.number(b.peak_depth).number(scene.spec.outputs.impact_filter_window);
-        csv.number(scene.spec.outputs.impact_patch_edge);
         const terrain::Building* building = i < scene.buildings.size() ? &scene.buildings[i] : nullptr;
-        csv.number(building != nullptr ? building->height : observe::never);
-        csv.word(building != nullptr && building->height_assumed ? "yes" : "no");
-        csv.word(kind_of(b)).number(b.impulse / 1e3).number(b.failure_time);
-        const auto of_barrier = [&](double value) { return b.is_barrier ? value : observe::never; };
-        csv.number(of_barrier(b.overtopped_volume)).number(b.first_overtopping_time);
-        csv.number(of_barrier(b.passed_volume)).number(of_barrier(b.retained_volume));
-        csv.number(of_barrier(b.peak_retained_volume)).number(of_barrier(b.peak_filling_height));
-        csv.number(b.removed_time).number(b.peak_speed);
-        const report::IntensityClass* intensity = guideline.class_of(b);
-        csv.word(intensity != nullptr ? intensity->name : "");
+        for (const auto& [name, value] : building_row(scene, observation.buildings[i], building)) {
+            const auto* text = std::get_if<std::string>(&value);
+            text != nullptr ? csv.word(*text) : csv.number(std::get<double>(value));
+        }
         csv.end_row();
     }
     return csv.text();
@@ -137,6 +123,38 @@ std::string discharge_table(const observe::Observation& observation, std::string
 }
 
 }  // namespace
+
+std::vector<std::pair<std::string, geo::Attribute>> building_row(const scene::Scene& scene,
+                                                                 const observe::BuildingImpact& b,
+                                                                 const terrain::Building* building) {
+    const params::OutputSpec& outputs = scene.spec.outputs;
+    const report::IntensityClass* intensity = report::intensity_guideline(outputs.intensity_guideline).class_of(b);
+    const auto yes_or_no = [](bool value) { return std::string(value ? "yes" : "no"); };
+    const auto of_barrier = [&](double value) { return b.is_barrier ? value : observe::never; };
+    return {{"name", b.name},
+            {"hit", yes_or_no(b.hit)},
+            {"first_hit_time_s", b.first_hit_time},
+            {"peak_force_kN", b.peak_force / 1e3},
+            {"peak_impact_pressure_kPa", b.peak_impact_pressure / 1e3},
+            {"peak_dynamic_pressure_kPa", b.peak_dynamic_pressure / 1e3},
+            {"peak_depth_m", b.peak_depth},
+            {"filter_window_s", outputs.impact_filter_window},
+            {"patch_edge_m", outputs.impact_patch_edge},
+            {"height_m", building != nullptr ? building->height : observe::never},
+            {"height_assumed", yes_or_no(building != nullptr && building->height_assumed)},
+            {"kind", std::string(kind_of(b))},
+            {"impulse_kNs", b.impulse / 1e3},
+            {"failed_s", b.failure_time},
+            {"overtopped_m3", of_barrier(b.overtopped_volume)},
+            {"first_overtopped_s", b.first_overtopping_time},
+            {"passed_m3", of_barrier(b.passed_volume)},
+            {"retained_m3", of_barrier(b.retained_volume)},
+            {"peak_retained_m3", of_barrier(b.peak_retained_volume)},
+            {"peak_filling_height_m", of_barrier(b.peak_filling_height)},
+            {"removed_time_s", b.removed_time},
+            {"peak_speed_mps", b.peak_speed},
+            {"intensity", intensity != nullptr ? intensity->name : std::string()}};
+}
 
 std::vector<PageFile> tables_of(const run::RunResult& result, const std::string& changed) {
     using run::RunResult;

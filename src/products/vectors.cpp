@@ -35,67 +35,17 @@ class Tables {
     std::set<std::string> filled_;
 };
 
-geo::Attribute yes_or_no(bool value) {
-    return std::string(value ? "yes" : "no");
-}
-
-/// The columns are those of buildings.csv.
 Status write_buildings(const scene::Scene& scene, const observe::Observation& observation, Tables& tables) {
-    const std::vector<geo::Field> fields = {{"name", true},
-                                            {"hit", true},
-                                            {"first_hit_time_s"},
-                                            {"peak_force_kN"},
-                                            {"peak_impact_pressure_kPa"},
-                                            {"peak_dynamic_pressure_kPa"},
-                                            {"peak_depth_m"},
-                                            {"filter_window_s"},
-                                            {"patch_edge_m"},
-                                            {"height_m"},
-                                            {"height_assumed", true},
-                                            {"kind", true},
-                                            {"impulse_kNs"},
-                                            {"failed_s"},
-                                            {"overtopped_m3"},
-                                            {"first_overtopped_s"},
-                                            {"passed_m3"},
-                                            {"retained_m3"},
-                                            {"peak_retained_m3"},
-                                            {"peak_filling_height_m"},
-                                            {"removed_time_s"},
-                                            {"peak_speed_mps"},
-                                            {"intensity", true}};
-    const report::IntensityGuideline& guideline = report::intensity_guideline(scene.spec.outputs.intensity_guideline);
+    std::vector<geo::Field> fields;
+    for (const auto& [name, value] : building_row(scene, {}, nullptr)) {
+        fields.push_back({name, std::holds_alternative<std::string>(value)});
+    }
     std::vector<geo::OutputFeature> features;
     for (std::size_t i = 0; i < scene.buildings.size() && i < observation.buildings.size(); ++i) {
-        const terrain::Building& building = scene.buildings[i];
-        const observe::BuildingImpact& b = observation.buildings[i];
-        const auto of_barrier = [&](double value) { return b.is_barrier ? value : observe::never; };
-        const report::IntensityClass* intensity = guideline.class_of(b);
-        features.push_back({building.footprint,
-                            {},
-                            {b.name,
-                             yes_or_no(b.hit),
-                             b.first_hit_time,
-                             b.peak_force / 1e3,
-                             b.peak_impact_pressure / 1e3,
-                             b.peak_dynamic_pressure / 1e3,
-                             b.peak_depth,
-                             scene.spec.outputs.impact_filter_window,
-                             scene.spec.outputs.impact_patch_edge,
-                             building.height,
-                             yes_or_no(building.height_assumed),
-                             std::string(kind_of(b)),
-                             b.impulse / 1e3,
-                             b.failure_time,
-                             of_barrier(b.overtopped_volume),
-                             b.first_overtopping_time,
-                             of_barrier(b.passed_volume),
-                             of_barrier(b.retained_volume),
-                             of_barrier(b.peak_retained_volume),
-                             of_barrier(b.peak_filling_height),
-                             b.removed_time,
-                             b.peak_speed,
-                             intensity != nullptr ? intensity->name : std::string()}});
+        features.push_back({scene.buildings[i].footprint, {}, {}});
+        for (auto& [name, value] : building_row(scene, observation.buildings[i], &scene.buildings[i])) {
+            features.back().values.push_back(std::move(value));
+        }
     }
     return tables.write("buildings", fields, features);
 }

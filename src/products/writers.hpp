@@ -9,6 +9,7 @@
 
 #include "core/phases.hpp"
 #include "core/result.hpp"
+#include "geo/vector.hpp"
 #include "products/layer_definition.hpp"
 #include "run/comparison.hpp"
 #include "run/run_result.hpp"
@@ -43,6 +44,12 @@ void add_maps_over_time(const scene::Scene& scene, const run::RunResult& result,
 /// `changed`: as for write_products.
 [[nodiscard]] Status write_tables(const scene::Scene& scene, const run::RunResult& result,
                                   const std::filesystem::path& folder, std::string_view changed = {});
+
+/// A row of buildings.csv and of the layer buildings of results.gpkg, numbers and texts by their columns. `building`:
+/// nullptr where the scene has none.
+[[nodiscard]] std::vector<std::pair<std::string, geo::Attribute>> building_row(const scene::Scene& scene,
+                                                                               const observe::BuildingImpact& impact,
+                                                                               const terrain::Building* building);
 
 /// results.gpkg with the layers buildings, release, intensity (polygons of each class), inundation and deposit
 /// (outlines of what is deeper than outputs.arrival_depth_m), flow_path and chainage (a short line across the path per

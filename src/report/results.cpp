@@ -7,11 +7,10 @@
 #include <fmt/chrono.h>
 #include <fmt/format.h>
 
-#include "core/angle.hpp"
 #include "core/decimals.hpp"
 #include "core/number_or_null.hpp"
 #include "observe/front_tracker.hpp"
-#include "observe/peaks.hpp"
+#include "observe/number_names.hpp"
 #include "report/hazard_map.hpp"
 #include "report/number_text.hpp"
 #include "run/words.hpp"
@@ -33,23 +32,15 @@ double front_velocity_window(const scene::Scene& scene, const run::RunResult& re
 }
 
 struct MassBalance {
-    double entrained = 0, held = 0, moving = 0, deposited = 0, left = 0, residual = 0;
+    double residual = 0;
     bool closes = false;
 };
 
-MassBalance mass_balance(const observe::Observation& observation) {
-    MassBalance m;
-    if (!observation.timeseries.empty()) {
-        const observe::TimeSample& s = observation.timeseries.back();
-        m.entrained = s.volume_entrained;
-        m.held = s.volume_held;
-        m.moving = s.volume_moving;
-        m.deposited = s.volume_deposited;
-        m.left = s.volume_left;
-    }
-    m.residual = observation.volume_released + m.entrained - m.held - m.moving - m.deposited - m.left;
-    m.closes = std::abs(m.residual) <= observation.volume_rounding * std::max(1.0, observation.volume_released);
-    return m;
+MassBalance mass_balance(const observe::Observation& o) {
+    const observe::TimeSample end = o.at_end();
+    const double residual = o.volume_released + end.volume_entrained - end.volume_held - end.volume_moving -
+                            end.volume_deposited - end.volume_left;
+    return {residual, std::abs(residual) <= o.volume_rounding * std::max(1.0, o.volume_released)};
 }
 
 std::string moving_text(const run::RunResult& result, double deposited_speed) {
@@ -137,23 +128,27 @@ Json flow_thickness(const scene::Scene& scene, const run::RunResult& result) {
 
 Json key_figures(const scene::Scene& scene, const run::RunResult& result) {
     const observe::Observation& o = result.observation;
+    const observe::TimeSample end = o.at_end();
     const MassBalance mass = mass_balance(o);
     Json all = Json::array();
-    const auto add = [&](const char* key, const char* name, Json value, const std::string& format, const char* unit,
-                         const std::string& note, bool alert = false) {
+    const auto add = [&](std::string_view key, std::string_view name, Json value, const std::string& format,
+                         std::string_view unit, const std::string& note, bool alert = false) {
         all.push_back(key_figure(key, name, std::move(value), format, unit, note, alert));
     };
-    const int volume_decimals = decimals_for(o.volume_released + mass.entrained, 1);
+    const int volume_decimals = decimals_for(o.volume_released + end.volume_entrained, 1);
     const int run_out_decimals = decimals_for(o.run_out.along_flow, 0);
     const auto volume_format = [&](double v) { return v < 100 ? fmt::format("f{}", volume_decimals) : "f0"; };
     const auto in_m3 = [&](double volume) { return fixed(volume, volume_decimals); };
-    add("released_volume_m3", "Released volume", o.volume_released, volume_format(o.volume_released), "m³",
+    add("released_volume_m3", observe::find_number("volume_released_m3")->title, o.volume_released,
+        volume_format(o.volume_released), "m³",
         result.zoom ? fmt::format("of the event's {} m³ came into the zoom", fixed(result.zoom->event_volume, 0))
                     : plural(scene.releases.size(), "release") +
                           (scene.inflows.empty() ? "" : ", " + plural(scene.inflows.size(), "inflow")));
     if (!scene.bed.empty()) {
-        add("entrained_volume_m3", "Entrained from the bed", mass.entrained, volume_format(mass.entrained), "m³",
-            fmt::format("{} × the released volume, deepest {}\u00a0m", fixed(mass.entrained / o.volume_released, 2),
+        const double entrained = end.volume_entrained;
+        add("entrained_volume_m3", observe::find_number("volume_entrained_m3")->title, entrained,
+            volume_format(entrained), "m³",
+            fmt::format("{} × the released volume, deepest {}\u00a0m", fixed(entrained / o.volume_released, 2),
                         fixed(greatest(o.erosion.depth), length_decimals(scene, 2))));
     }
     const bool ran = std::isfinite(o.run_out.along_flow);
@@ -161,17 +156,19 @@ Json key_figures(const scene::Scene& scene, const run::RunResult& result) {
         std::isfinite(o.run_out.front_chainage)
             ? fmt::format(", front to chainage {}\u00a0m", fixed(o.run_out.front_chainage, run_out_decimals))
             : "";
-    add("run_out_along_flow_m", o.run_out.at_least ? "Run-out along the flow, at least" : "Run-out along the flow",
-        o.run_out.along_flow, fmt::format("f{}", run_out_decimals), ran ? "m" : "",
+    const observe::NamedNumber &run_out = observe::run_out_number, &angle = *observe::find_number("runout_angle_deg");
+    add(run_out.key, std::string(run_out.title) + (o.run_out.at_least ? ", at least" : ""), o.run_out.along_flow,
+        fmt::format("f{}", run_out_decimals), ran ? "m" : "",
         ran ? fmt::format("{}\u00a0m in a straight line, drop {}\u00a0m{}{}",
                           fixed(o.run_out.straight, run_out_decimals),
                           fixed(o.run_out.drop, std::max(1, run_out_decimals)), front,
                           o.run_out.at_least ? "; " + left_text(scene, result) : "")
             : "no debris ran out");
-    add("runout_angle_deg", "Run-out angle", o.run_out.runout_angle * degrees_per_radian, "f1", ran ? "°" : "",
-        std::isfinite(o.run_out.travel_angle) ? fmt::format("travel angle of the centre of mass\u00a0{}°",
-                                                            fixed(o.run_out.travel_angle * degrees_per_radian, 1))
-                                              : "");
+    add(angle.key, angle.title, angle.value(o), "f1", ran ? "°" : "",
+        std::isfinite(o.run_out.travel_angle)
+            ? fmt::format("travel angle of the centre of mass\u00a0{}°",
+                          fixed(observe::find_number("travel_angle_deg")->value(o), 1))
+            : "");
     const observe::Hits hits = hits_among(o.buildings, false), barriers_hit = hits_among(o.buildings, true);
     const observe::BuildingImpact* worst = nullptr;
     for (const observe::BuildingImpact& b : o.buildings) {
@@ -188,16 +185,17 @@ Json key_figures(const scene::Scene& scene, const run::RunResult& result) {
     all.push_back(key_figure("buildings_hit", "Buildings hit", hits.hit, "f0", fmt::format("of {}", hits.all),
                              hits_note, hits.hit > 0));
     const auto [depth, speed, pressure] = measure_peaks(o.maps);
-    add("peak_depth_m", "Peak flow depth", depth.value, fmt::format("f{}", length_decimals(scene, 1)), "m",
+    const auto& [of_depth, of_speed, of_pressure] = observe::peak_numbers;
+    add(of_depth.key, of_depth.map.title, depth.value, fmt::format("f{}", length_decimals(scene, 1)), "m",
         place_of(scene, depth));
-    add("peak_speed_mps", "Peak speed", speed.value, "f1", "m/s", place_of(scene, speed));
-    add("peak_dynamic_pressure_kPa", "Peak dynamic pressure", pressure.value / 1e3, "s3", "kPa",
+    add(of_speed.key, of_speed.map.title, speed.value, "f1", "m/s", place_of(scene, speed));
+    add(of_pressure.key, of_pressure.map.title, pressure.value / 1e3, "s3", "kPa",
         "ρv² of the free flow, " + place_of(scene, pressure));
     add("mass_balance", "Mass balance", mass.closes ? Json("closed") : Json(mass.residual), "f3",
         mass.closes ? "" : "m³ missing",
-        fmt::format("deposited\u00a0{} · moving\u00a0{} · left\u00a0{}\u00a0m³{}", in_m3(mass.deposited),
-                    in_m3(mass.moving), in_m3(mass.left),
-                    mass.held > 0 ? fmt::format(" · held\u00a0{}\u00a0m³", in_m3(mass.held)) : ""),
+        fmt::format("deposited\u00a0{} · moving\u00a0{} · left\u00a0{}\u00a0m³{}", in_m3(end.volume_deposited),
+                    in_m3(end.volume_moving), in_m3(end.volume_left),
+                    end.volume_held > 0 ? fmt::format(" · held\u00a0{}\u00a0m³", in_m3(end.volume_held)) : ""),
         !mass.closes);
     return all;
 }
@@ -228,6 +226,7 @@ Json quality(const scene::Scene& scene, const run::RunResult& result) {
     const char* state = result.status == run::RunStatus::complete      ? "complete"
                         : result.status == run::RunStatus::interrupted ? "partial: interrupted"
                                                                        : "partial: stopped by a fault";
+    const observe::TimeSample end = o.at_end();
     const MassBalance mass = mass_balance(o);
     const observe::Compression& c = o.compression;
     Json all = {
@@ -240,13 +239,14 @@ Json quality(const scene::Scene& scene, const run::RunResult& result) {
         fact("Real-time factor",
              significant(result.real_time_factor(), 3) + " (simulated over wall time; 1 is real time)"),
     };
-    const int decimals = decimals_for(o.volume_released + mass.entrained, 2);
+    const int decimals = decimals_for(o.volume_released + end.volume_entrained, 2);
     const auto in_m3 = [&](double volume) { return fixed(volume, decimals); };
     const Json balance =
         fact("Mass balance",
              fmt::format("released {}{} = held {} + moving {} + deposited {} + left {} m³", in_m3(o.volume_released),
-                         scene.bed.empty() ? "" : fmt::format(" + entrained {}", in_m3(mass.entrained)),
-                         in_m3(mass.held), in_m3(mass.moving), in_m3(mass.deposited), in_m3(mass.left)),
+                         scene.bed.empty() ? "" : fmt::format(" + entrained {}", in_m3(end.volume_entrained)),
+                         in_m3(end.volume_held), in_m3(end.volume_moving), in_m3(end.volume_deposited),
+                         in_m3(end.volume_left)),
              mass.closes ? "" : fmt::format("; {} m³ missing", fixed(mass.residual, 3)));
     if (result.depth_averaged()) {
         all.push_back(fact(

@@ -70,7 +70,6 @@ Json zoom(const run::RunResult& result) {
     if (!result.zoom) return {};
     const run::ZoomRecord& zoom = *result.zoom;
     const Extent e = extent_of(zoom.area);
-    const auto& series = result.observation.timeseries;
     Json corners = Json::array();
     for (const PlanPoint& p : zoom.area.outer) corners.push_back({p.x, p.y});
     return {{"around", zoom.around.empty() ? Json() : Json(zoom.around)},
@@ -90,7 +89,7 @@ Json zoom(const run::RunResult& result) {
             {"sampled_out_m3", zoom.volumes.sampled_out},
             {"first_time_s", zoom.first_time()},
             {"pieces", zoom.pieces},
-            {"balance", balance_rows(zoom, series.empty() ? 0 : series.back().volume_left)},
+            {"balance", balance_rows(zoom, result.observation.at_end().volume_left)},
             {"chart", discharge_chart(zoom)}};
 }
 

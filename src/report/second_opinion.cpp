@@ -24,11 +24,12 @@ struct Quantity {
 std::vector<Quantity> quantities(const BothModels& models, const run::SecondOpinion& opinion) {
     std::vector<Quantity> all;
     const observe::Observation &p = models.particles.observation, &d = models.depth_averaged.observation;
-    const auto add = [&](const std::string& name, const char* unit, const std::string& format, const auto& value) {
-        all.push_back({name, unit, format, value(p), value(d)});
+    const auto add = [&](const std::string& name, std::string_view unit, const std::string& format, const auto& value) {
+        all.push_back({name, std::string(unit), format, value(p), value(d)});
     };
-    const auto add_number = [&](const observe::NamedNumber& number, const char* unit, const std::string& format) {
-        add(number.title, unit, format, number.value);
+    const auto add_number = [&](std::string_view key, const std::string& format) {
+        const observe::NamedNumber& number = *observe::find_number(key);
+        add(number.title, observe::printed_unit(number.unit), format, number.value);
     };
     for (const params::ObservationSpec& observed : models.scene.spec.observations) {
         const std::string at = fmt::format(" at {} m", plain(observed.chainage));
@@ -37,34 +38,26 @@ std::vector<Quantity> quantities(const BothModels& models, const run::SecondOpin
         add("Front arrival" + at, "s", "f1",
             [&](const auto& o) { return front_at(o, observed.chainage).arrival_time; });
     }
-    const std::string metres = fmt::format("f{}", length_decimals(models.scene));
+    const auto metres = [&](int least) { return fmt::format("f{}", length_decimals(models.scene, least)); };
     const std::string square_metres = fmt::format("f{}", decimals_for(opinion.area.both + opinion.area.only_first, 0));
-    add_number(observe::front_number, "m", metres);
-    add_number(observe::run_out_numbers[0], "m", metres);
-    add_number(observe::run_out_numbers[1], "m", metres);
-    add_number(observe::run_out_numbers[3], "°", "f1");
+    for (const char* key : {"front_chainage_m", "run_out_along_flow_m", "run_out_straight_m"})
+        add_number(key, metres(0));
+    add_number("runout_angle_deg", "f1");
     all.push_back({"Affected area", "m²", square_metres, opinion.area.both + opinion.area.only_first,
                    opinion.area.both + opinion.area.only_second});
-    add("Deposit, area", "m²", square_metres, [](const auto& o) { return o.deposit.area; });
-    add("Deposit, depth that nine tenths stay below", "m", fmt::format("f{}", length_decimals(models.scene, 2)),
-        [](const auto& o) { return o.deposit.depth; });
-    const auto peak = [&](const std::string& name, const char* unit, const std::string& format,
-                          const run::MapPair& maps, double scale) {
-        all.push_back({name, unit, format, scale * maps.peak_particles.value, scale * maps.peak_depth_averaged.value});
-    };
-    const auto median = [&](const std::string& name, const char* unit, const std::string& format,
-                            const run::MapPair& maps, double scale) {
-        all.push_back({name + ", median of the ground of both", unit, format, scale * maps.median_particles,
-                       scale * maps.median_depth_averaged});
-    };
-    peak("Peak depth", "m", fmt::format("f{}", length_decimals(models.scene, 1)), opinion.depth, 1);
-    median("Peak depth", "m", fmt::format("f{}", length_decimals(models.scene, 2)), opinion.depth, 1);
-    peak("Peak speed", "m/s", "f1", opinion.speed, 1);
-    median("Peak speed", "m/s", "f1", opinion.speed, 1);
-    peak("Peak dynamic pressure", "kPa", "s3", opinion.pressure, 1e-3);
-    median("Peak dynamic pressure", "kPa", "s3", opinion.pressure, 1e-3);
-    add("Released volume", "m³", fmt::format("f{}", decimals_for(p.volume_released, 1)),
-        [](const auto& o) { return o.volume_released; });
+    add_number("deposit_area_m2", square_metres);
+    add_number("deposit_depth_m", metres(2));
+    all.back().name += ", which nine tenths stay below";
+    for (std::size_t k = 0; k < run::peak_pairs.size(); ++k) {
+        const observe::NamedMap& map = observe::peak_numbers[k].map;
+        const run::MapPair& maps = opinion.*run::peak_pairs[k];
+        const auto format = [&](int least) { return k == 0 ? metres(least) : k == 1 ? "f1" : "s3"; };
+        all.push_back({map.title, map.unit, format(1), map.factor * maps.peak_particles.value,
+                       map.factor * maps.peak_depth_averaged.value});
+        all.push_back({std::string(map.title) + ", median of the ground of both", map.unit, format(2),
+                       map.factor * maps.median_particles, map.factor * maps.median_depth_averaged});
+    }
+    add_number("volume_released_m3", fmt::format("f{}", decimals_for(p.volume_released, 1)));
     all.push_back({"Wall time", "s", "f1", models.particles.wall_time, models.depth_averaged.wall_time});
     return all;
 }
@@ -141,7 +134,7 @@ Json cards(const BothModels& models, const run::SecondOpinion& opinion) {
     all.push_back(key_figure("intersection_over_union_percent", "Agreement of the affected area",
                              number_or_null<Json>(100 * area.intersection_over_union()), "f0", "%",
                              "intersection over union"));
-    const auto of_particles = [&](const char* key, const char* name, double p, double d, const char* format,
+    const auto of_particles = [&](std::string_view key, const char* name, double p, double d, const char* format,
                                   const char* unit) {
         const double percent = percent_more(p, d);
         all.push_back(key_figure(
@@ -152,13 +145,14 @@ Json cards(const BothModels& models, const run::SecondOpinion& opinion) {
                 : ""));
     };
     const observe::NamedNumber& run_out = observe::run_out_number;
-    of_particles(run_out.key.data(), run_out.title, run_out.value(models.particles.observation),
+    of_particles(run_out.key, run_out.title, run_out.value(models.particles.observation),
                  run_out.value(models.depth_averaged.observation), "f0", run_out.unit);
-    of_particles("peak_speed_mps", "Peak speed", opinion.speed.peak_particles.value,
+    const auto& [of_depth, of_speed, of_pressure] = observe::peak_numbers;
+    of_particles(of_speed.key, of_speed.map.title, opinion.speed.peak_particles.value,
                  opinion.speed.peak_depth_averaged.value, "f1", "m/s");
-    of_particles("peak_dynamic_pressure_kPa", "Peak dynamic pressure", opinion.pressure.peak_particles.value / 1e3,
+    of_particles(of_pressure.key, of_pressure.map.title, opinion.pressure.peak_particles.value / 1e3,
                  opinion.pressure.peak_depth_averaged.value / 1e3, "s3", "kPa");
-    of_particles("peak_depth_m", "Peak depth", opinion.depth.peak_particles.value,
+    of_particles(of_depth.key, of_depth.map.title, opinion.depth.peak_particles.value,
                  opinion.depth.peak_depth_averaged.value, "f1", "m");
     const auto difference = [&](const char* key, const char* name, const run::LargestDifference& largest, int digits,
                                 const char* unit, const std::string& where) {

@@ -22,21 +22,19 @@ namespace {
 
 constexpr Colour blue{67, 147, 195}, orange{224, 130, 20}, shared{92, 92, 100};
 
-/// A peak map of a run and what the page says of it.
-struct Measure {
-    const char* file;  ///< as of hazard_maps()
-    const char* name;
+/// A peak map of both models and what the page says of it.
+struct PeakMap {
+    const HazardMap& of_run;
+    const run::MapPair& maps;
     const char* what;  ///< in a sentence
     const char* deeper;
-    const run::MapPair* maps;
-    int digits;
 };
 
-std::array<Measure, 3> measures(const run::SecondOpinion& opinion) {
-    return {{{"peak_depth", "Peak depth", "vertical flow depth", "deeper", &opinion.depth, 2},
-             {"peak_speed", "Peak speed", "depth-averaged speed", "faster", &opinion.speed, 1},
-             {"peak_pressure", "Peak dynamic pressure", "dynamic pressure of the free flow, ρv²,", "higher",
-              &opinion.pressure, 0}}};
+std::array<PeakMap, 3> peak_maps(const run::SecondOpinion& opinion) {
+    const std::vector<HazardMap>& maps = hazard_maps();
+    return {{{maps[0], opinion.depth, "vertical flow depth", "deeper"},
+             {maps[1], opinion.speed, "depth-averaged speed", "faster"},
+             {maps[2], opinion.pressure, "dynamic pressure of the free flow, ρv²,", "higher"}}};
 }
 
 /// The difference that nineteen of twenty cells stay within: the scale of the map, which one cell must not set.
@@ -51,28 +49,29 @@ double usual_difference(const Grid<float>& difference) {
     return *at;
 }
 
-HazardMap difference_style(const HazardMap& of, const Measure& measure) {
+HazardMap difference_style(const PeakMap& peak) {
+    const HazardMap& of = peak.of_run;
     HazardMap style;
-    style.file = fmt::format("{}_difference", measure.file);
-    style.title = fmt::format("Difference in {}", measure.what);
+    style.file = fmt::format("{}_difference", of.file);
+    style.title = fmt::format("Difference in {}", peak.what);
     style.unit = of.unit;
     style.factor = of.factor;
-    Classes classes = difference_classes(of.factor * usual_difference(measure.maps->difference));
+    Classes classes = difference_classes(of.factor * usual_difference(peak.maps.difference));
     style.breaks = std::move(classes.breaks);
     style.colours = std::move(classes.colours);
     return style;
 }
 
-std::string largest_text(const BothModels& models, const Measure& measure, const HazardMap& style) {
-    const run::LargestDifference& largest = measure.maps->largest;
+std::string largest_text(const BothModels& models, const PeakMap& peak) {
+    const run::LargestDifference& largest = peak.maps.largest;
     if (!largest.known() || largest.size() == 0) return "";
     const auto shown = [&](const Grid<float>& map, double value) {
         if (std::isnan(value_at(map, largest.at))) return std::string("no debris");
-        return fmt::format("{}\u00a0{}", fixed(style.factor * value, measure.digits), style.unit);
+        return fmt::format("{}\u00a0{}", fixed(peak.of_run.factor * value, peak.of_run.digits), peak.of_run.unit);
     };
     return fmt::format(" Largest {}: {} with particles, {} depth-averaged.", place(models.scene, largest.at),
-                       shown(measure.maps->particles, largest.particles),
-                       shown(measure.maps->depth_averaged, largest.depth_averaged));
+                       shown(peak.maps.particles, largest.particles),
+                       shown(peak.maps.depth_averaged, largest.depth_averaged));
 }
 
 Grid<float> classes_of_area(const run::SecondOpinion& opinion, double least) {
@@ -86,27 +85,25 @@ Grid<float> classes_of_area(const run::SecondOpinion& opinion, double least) {
 }
 
 /// Three maps: of each model, in the same colours, and their difference.
-void add_layers(const BothModels& models, const Measure& measure, MapContent& content) {
-    const auto known = std::find_if(hazard_maps().begin(), hazard_maps().end(),
-                                    [&](const HazardMap& map) { return map.file == measure.file; });
-    HazardMap style = *known;
-    style.full_scale =
-        style.factor * std::fmax(measure.maps->peak_particles.value, measure.maps->peak_depth_averaged.value);
+void add_layers(const BothModels& models, const PeakMap& peak, MapContent& content) {
+    HazardMap style = peak.of_run;
+    const std::string& name = style.title;
+    style.full_scale = style.factor * std::fmax(peak.maps.peak_particles.value, peak.maps.peak_depth_averaged.value);
     for (const auto& [result, model, words] :
          {std::tuple{&models.particles, "particles", "with particles"},
           std::tuple{&models.depth_averaged, "depth-averaged", "in the depth-averaged model"}}) {
-        style.file = fmt::format("{}_{}", measure.file, result->depth_averaged() ? "depth_averaged" : "particles");
-        content.layers.push_back(
-            {style, &(result->observation.maps.*style.grid), fmt::format("{}, {}", measure.name, model),
-             fmt::format("Greatest {} at each place, {}.", measure.what, words), measure.digits, "", measure.name});
+        style.file = fmt::format("{}_{}", peak.of_run.file, result->depth_averaged() ? "depth_averaged" : "particles");
+        content.layers.push_back({style, &(result->observation.maps.*style.grid), fmt::format("{}, {}", name, model),
+                                  fmt::format("Greatest {} at each place, {}.", peak.what, words), style.digits, "",
+                                  name});
     }
-    const HazardMap difference = difference_style(*known, measure);
+    const HazardMap difference = difference_style(peak);
     content.layers.push_back(
-        {difference, &measure.maps->difference, fmt::format("{}, difference", measure.name),
+        {difference, &peak.maps.difference, fmt::format("{}, difference", name),
          fmt::format("Depth-averaged less particles, as means over the same cells; blue where the depth-averaged model "
                      "is {}, orange where the particles are.{}",
-                     measure.deeper, largest_text(models, measure, *known)),
-         measure.digits, "", measure.name});
+                     peak.deeper, largest_text(models, peak)),
+         style.digits, "", name});
 }
 
 }  // namespace
@@ -130,7 +127,7 @@ Result<std::string> second_opinion_report(const BothModels& models, const run::S
             fmt::format("{}: {}", name_of(impact), by == neither ? "not hit" : hit_by_names.at(by)));
     });
     content.layers.clear();
-    for (const Measure& measure : measures(opinion)) add_layers(models, measure, content);
+    for (const PeakMap& peak : peak_maps(opinion)) add_layers(models, peak, content);
     HazardMap area;
     area.file = "affected_area";
     area.title = "Affected area";

@@ -7,20 +7,22 @@
 
 #include <fmt/format.h>
 
+#include "observe/number_names.hpp"
+#include "run/words.hpp"
+
 namespace talus::run {
 namespace {
 
 struct Measure {
     Quantity quantity;
     std::function<double(const observe::Observation&)> value;
-    observe::Peak observe::Peaks::*peak = nullptr;               // of the maps, in place of `value`
-    double scale = 1;                                            // of a peak, from SI
+    const observe::NamedPeak* peak = nullptr;                    // of the maps, in place of `value`
     std::function<bool(const observe::Observation&)> same = {};  // where a number alone is not enough: whether it is
                                                                  // the same as in the base
 };
 
 double value_in(const Measure& measure, const observe::Observation& observation, const observe::Peaks& peaks) {
-    return measure.peak ? measure.scale * (peaks.*measure.peak).value : measure.value(observation);
+    return measure.peak ? measure.peak->value(peaks) : measure.value(observation);
 }
 
 double first_building_hit(const observe::Observation& observation) {
@@ -69,29 +71,27 @@ Measure arrival(const scene::Scene& scene, const observe::Observation& base) {
     return m;
 }
 
-/// Run-out, and area and depth of the deposit.
-void add_deposit(std::vector<Measure>& all) {
-    const char* const none = "nothing was deposited";
-    all.push_back({{.key = "run_out",
-                    .suffix = "m",
-                    .name = "run-out",
-                    .unit = "m",
-                    .not_measured = "no debris is left to measure"},
-                   [](const observe::Observation& o) { return o.run_out.along_flow; }});
-    all.push_back({{"deposit_area", "m2", "deposit area", "m²", 10, observe::never, none},
-                   [](const observe::Observation& o) { return o.deposit.area > 0 ? o.deposit.area : observe::never; }});
-    all.push_back({{"deposit_depth", "m", "deposit depth", "m", 10, observe::never, none},
-                   [](const observe::Observation& o) { return o.deposit.depth; }});
+/// Of a number whose key ends with its unit.
+Quantity quantity_of(std::string_view key, const char* title, const char* unit, const char* not_measured) {
+    const std::size_t cut = key.rfind('_');
+    return {.key = std::string(key.substr(0, cut)),
+            .suffix = std::string(key.substr(cut + 1)),
+            .name = uncapitalised(title),
+            .unit = std::string(observe::printed_unit(unit)),
+            .not_measured = not_measured};
 }
 
-Measure peak(const char* key, const char* suffix, const char* name, const char* unit,
-             observe::Peak observe::Peaks::*member, double scale = 1) {
-    Measure m;
-    m.quantity = {
-        .key = key, .suffix = suffix, .name = name, .unit = unit, .not_measured = "debris reached no map cell"};
-    m.peak = member;
-    m.scale = scale;
-    return m;
+/// Run-out, and area and depth of the deposit.
+void add_deposit(std::vector<Measure>& all) {
+    all.push_back({{"run_out", "m", "run-out", "m", 5, observe::never, "no debris is left to measure"},
+                   observe::run_out_number.value});
+    for (const observe::NamedNumber& number : observe::deposit_numbers) {
+        all.push_back({quantity_of(number.key, number.title, number.unit, "nothing was deposited"),
+                       [value = number.value](const observe::Observation& o) {
+                           return o.deposit.area > 0 ? value(o) : observe::never;
+                       }});
+        all.back().quantity.limit_percent = 10;
+    }
 }
 
 double largest_force(const observe::Observation& observation) {
@@ -168,10 +168,10 @@ std::vector<Measure> measures(ComparisonKind kind, const scene::Scene& scene, co
     add_deposit(all);
     if (kind == ComparisonKind::sensitivity) {
         // Peaks are those of single cells: no measure of convergence.
-        all.push_back(peak("peak_depth", "m", "peak depth", "m", &observe::Peaks::depth));
-        all.push_back(peak("peak_speed", "mps", "peak speed", "m/s", &observe::Peaks::speed));
-        all.push_back(
-            peak("peak_dynamic_pressure", "kPa", "peak dynamic pressure", "kPa", &observe::Peaks::pressure, 1e-3));
+        for (const observe::NamedPeak& peak : observe::peak_numbers) {
+            all.push_back(
+                {quantity_of(peak.key, peak.map.title, peak.map.unit, "debris reached no map cell"), {}, &peak});
+        }
     }
     if (kind == ComparisonKind::convergence && !base.buildings.empty()) add_buildings(base, all);
     for (Measure& m : all) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cmath>
 
 #include "core/grid.hpp"
@@ -46,6 +47,8 @@ struct SecondOpinion {
     AreaAgreement area;              ///< first: particles; deeper than outputs.arrival_depth
     LargestDifference arrival;       ///< s, of the front along the flow path
 };
+/// In the order of observe::peak_numbers.
+inline constexpr std::array peak_pairs = {&SecondOpinion::depth, &SecondOpinion::speed, &SecondOpinion::pressure};
 
 /// Where runs follow their debris, takes one path for both, so that chainages are the same places: that of the run
 /// that went farther, which cuts the front of neither. Call it before second_opinion().

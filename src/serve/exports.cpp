@@ -56,7 +56,7 @@ constexpr ExportFile export_files[] = {
     {scene_zip, "application/zip", "The scene and its files with the changes of this scenario, for talus run",
      Needs::source},
     {"manifest.json", "application/json", "All parameters, versions, checksums and the result's hash"},
-    {"peak_depth.tif", "image/tiff", "Peak flow depth, m"},
+    {"peak_depth.tif", "image/tiff", "Peak depth, m"},
     {"peak_depth.qml", "application/xml", "QGIS style of it"},
     {"peak_speed.tif", "image/tiff", "Peak speed, m/s"},
     {"peak_speed.qml", "application/xml", "QGIS style of it"},

@@ -18,6 +18,7 @@
 #include "run/verdict.hpp"
 #include "run/words.hpp"
 #include "scene/grid_cell.hpp"
+#include "twin/gauges_json.hpp"
 #include "twin/json_keys.hpp"
 
 namespace talus::twin {
@@ -49,13 +50,10 @@ Grid<float> known_only(Grid<float> depth) {
 }  // namespace
 
 json DepthAveragedRun::to_json() const {
-    json front = {
-        {"chainage_m", json::array()}, {"arrival_time_s", json::array()}, {"front_velocity_mps", json::array()}};
-    for (const observe::FrontSample& sample : result.observation.front) {
-        front["chainage_m"].push_back(sample.chainage);
-        front["arrival_time_s"].push_back(number_or_null<json>(sample.arrival_time));
-        front["front_velocity_mps"].push_back(number_or_null<json>(sample.front_velocity));
-    }
+    const std::vector<observe::FrontSample>& samples = result.observation.front;
+    const json front = {{"chainage_m", column_json(samples, &observe::FrontSample::chainage)},
+                        {"arrival_time_s", column_json(samples, &observe::FrontSample::arrival_time)},
+                        {"front_velocity_mps", column_json(samples, &observe::FrontSample::front_velocity)}};
     return {{"end_s", result.simulated_time},
             {"complete", result.status == run::RunStatus::complete},
             {"stop_reason", result.stop_reason},

@@ -4,11 +4,20 @@
 
 #include <nlohmann/json.hpp>
 
+#include "core/number_or_null.hpp"
 #include "observe/observation.hpp"
 #include "terrain/cross_section.hpp"
 #include "terrain/gauge.hpp"
 
 namespace talus::twin {
+
+/// A value of every row; null where there is none.
+template <class Row>
+[[nodiscard]] nlohmann::json column_json(const std::vector<Row>& rows, double Row::*value) {
+    nlohmann::json values = nlohmann::json::array();
+    for (const Row& row : rows) values.push_back(number_or_null<nlohmann::json>(row.*value));
+    return values;
+}
 
 /// Name and place.
 [[nodiscard]] nlohmann::json gauge_place(const terrain::Gauge& gauge);

@@ -7,9 +7,7 @@
 #include <fmt/format.h>
 
 #include "core/number_or_null.hpp"
-#include "observe/map_names.hpp"
 #include "observe/number_names.hpp"
-#include "observe/peaks.hpp"
 #include "report/number_text.hpp"
 #include "run/second_opinion.hpp"
 #include "twin/depth_averaged.hpp"
@@ -104,15 +102,12 @@ json compared(const scene::Scene& scene, const run::RunResult& particles, const 
     // Maps of peaks are of whole runs.
     const observe::Peaks seen = measure_peaks(particles.observation.maps),
                          at_last = measure_peaks(whole.observation.maps);
-    const auto peak = [&](const char* key, observe::Peak observe::Peaks::*member) {
-        const observe::NamedMap& map = *observe::find_map(key);
-        const double value = map.factor * (at_last.*member).value;
-        rows.add(key, map.title, map.unit, map.decimals, map.factor * (seen.*member).value,
+    for (const observe::NamedPeak& peak : observe::peak_numbers) {
+        const observe::NamedMap& map = peak.map;
+        const double value = peak.value(at_last);
+        rows.add(std::string(map.key), map.title, map.unit, map.decimals, peak.value(seen),
                  over ? value : observe::never, value);
-    };
-    peak("peak_depth", &observe::Peaks::depth);
-    peak("peak_speed", &observe::Peaks::speed);
-    peak("peak_pressure", &observe::Peaks::pressure);
+    }
     return {{"time_s", particles.simulated_time},
             {"over", over},
             {"rows", rows.take()},

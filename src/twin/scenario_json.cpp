@@ -10,6 +10,7 @@
 #include "core/hash.hpp"
 #include "core/number_or_null.hpp"
 #include "geo/latitude.hpp"
+#include "observe/number_names.hpp"
 #include "report/intensity.hpp"
 #include "run/verdict.hpp"
 #include "scene/depth_averaged_keys.hpp"
@@ -234,13 +235,7 @@ json Scenario::state_json(bool with_hash) const {
                    {"wall_remaining_s", number_or_null<json>(run.wall_remaining().value_or(observe::never))},
                    {"step", state.step},
                    {"particles", state.count},
-                   {"volume_released_m3", now.volume_released},
-                   {"volume_entrained_m3", now.volume_entrained},
                    {"pore_pressure", knows_pore_pressure(run.model())},
-                   {"volume_held_m3", now.volume_held},
-                   {"volume_moving_m3", now.volume_moving},
-                   {"volume_deposited_m3", now.volume_deposited},
-                   {"volume_left_m3", now.volume_left},
                    {"front_chainage_m", number_or_null<json>(now.front_chainage)},
                    {"front_velocity_mps", advances ? number_or_null<json>(front.back().front_velocity) : json()},
                    {"largest_speed_mps", number_or_null<json>(state.max_speed)},
@@ -255,6 +250,9 @@ json Scenario::state_json(bool with_hash) const {
                      {"last_s", frames.empty() ? json() : json(frames.back()->time)},
                      {"frames", frames.size()},
                      {"bytes", run.recording().bytes()}}}};
+    for (const observe::NamedNumber& volume : observe::volume_numbers) {
+        answer[std::string(volume.key)] = now.*volume.sample;
+    }
     if (with_hash) answer["hash"] = to_hex(hash());
     return with_short_numbers(std::move(answer));
 }
@@ -265,37 +263,24 @@ json Scenario::verdict_json() const {
 
 json Scenario::series_json() const {
     const observe::Observer& observer = parts_->run->observer();
-    json time = json::object();
-    const auto column = [&](const char* name, double observe::TimeSample::*member) {
-        json& values = time[name] = json::array();
-        for (const observe::TimeSample& row : observer.timeseries())
-            values.push_back(number_or_null<json>(row.*member));
-    };
-    column("time_s", &observe::TimeSample::time);
-    column("front_chainage_m", &observe::TimeSample::front_chainage);
-    column("volume_released_m3", &observe::TimeSample::volume_released);
-    column("volume_entrained_m3", &observe::TimeSample::volume_entrained);
-    column("volume_held_m3", &observe::TimeSample::volume_held);
-    column("volume_moving_m3", &observe::TimeSample::volume_moving);
-    column("volume_deposited_m3", &observe::TimeSample::volume_deposited);
-    column("volume_left_m3", &observe::TimeSample::volume_left);
-    column("kinetic_energy_J", &observe::TimeSample::kinetic_energy);
-    column("potential_energy_J", &observe::TimeSample::potential_energy);
-    column("largest_speed_mps", &observe::TimeSample::largest_speed);
-    column("mean_compression", &observe::TimeSample::mean_compression);
-    column("max_compression", &observe::TimeSample::max_compression);
-    column("overcompressed_share", &observe::TimeSample::overcompressed_share);
-    column("time_step_s", &observe::TimeSample::time_step);
+    const std::vector<observe::TimeSample>& rows = observer.timeseries();
+    json time = {{"time_s", column_json(rows, &observe::TimeSample::time)},
+                 {"front_chainage_m", column_json(rows, &observe::TimeSample::front_chainage)},
+                 {"kinetic_energy_J", column_json(rows, &observe::TimeSample::kinetic_energy)},
+                 {"potential_energy_J", column_json(rows, &observe::TimeSample::potential_energy)},
+                 {"largest_speed_mps", column_json(rows, &observe::TimeSample::largest_speed)},
+                 {"mean_compression", column_json(rows, &observe::TimeSample::mean_compression)},
+                 {"max_compression", column_json(rows, &observe::TimeSample::max_compression)},
+                 {"overcompressed_share", column_json(rows, &observe::TimeSample::overcompressed_share)},
+                 {"time_step_s", column_json(rows, &observe::TimeSample::time_step)}};
+    for (const observe::NamedNumber& volume : observe::volume_numbers) {
+        time[std::string(volume.key)] = column_json(rows, volume.sample);
+    }
     const std::vector<observe::FrontSample> samples = observer.front();
-    json front = json::object();
-    const auto front_column = [&](const char* name, double observe::FrontSample::*member) {
-        json& values = front[name] = json::array();
-        for (const observe::FrontSample& row : samples) values.push_back(number_or_null<json>(row.*member));
-    };
-    front_column("chainage_m", &observe::FrontSample::chainage);
-    front_column("arrival_time_s", &observe::FrontSample::arrival_time);
-    front_column("front_velocity_mps", &observe::FrontSample::front_velocity);
-    front_column("particle_speed_mps", &observe::FrontSample::particle_speed);
+    const json front = {{"chainage_m", column_json(samples, &observe::FrontSample::chainage)},
+                        {"arrival_time_s", column_json(samples, &observe::FrontSample::arrival_time)},
+                        {"front_velocity_mps", column_json(samples, &observe::FrontSample::front_velocity)},
+                        {"particle_speed_mps", column_json(samples, &observe::FrontSample::particle_speed)}};
     return with_short_numbers({{"time", time}, {"front", front}, {"gauges", gauge_curves(observer.gauges())}});
 }
 

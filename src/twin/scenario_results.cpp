@@ -16,6 +16,7 @@
 #include "products/results_json.hpp"
 #include "report/results.hpp"
 #include "run/run_scene.hpp"
+#include "twin/gauges_json.hpp"
 #include "twin/json_keys.hpp"
 #include "twin/past_maps.hpp"
 #include "twin/recorded_flow.hpp"
@@ -145,25 +146,18 @@ json Scenario::results_json() const {
 json Scenario::measures_json() const {
     const run::RunResult result = parts_->outcome().second;
     const observe::RunOut& r = result.observation.run_out;
-    const auto number = [](double value) { return number_or_null<json>(value); };
     json gauges = json::array();
     for (const observe::GaugeRecord& record : result.observation.gauges) {
-        json time = json::array(), depth = json::array(), speed = json::array();
-        for (const observe::GaugeSample& row : record.rows) {
-            time.push_back(row.time);
-            depth.push_back(number(row.depth));
-            speed.push_back(number(row.speed));
-        }
         gauges.push_back({{"name", record.gauge.name},
                           {"x_m", record.gauge.at.x},
                           {"y_m", record.gauge.at.y},
-                          {"time_s", std::move(time)},
-                          {"depth_m", std::move(depth)},
-                          {"speed_mps", std::move(speed)}});
+                          {"time_s", column_json(record.rows, &observe::GaugeSample::time)},
+                          {"depth_m", column_json(record.rows, &observe::GaugeSample::depth)},
+                          {"speed_mps", column_json(record.rows, &observe::GaugeSample::speed)}});
     }
     json run_out = products::run_out_json(result.observation);
-    run_out["toe_x_m"] = number(r.toe.x);
-    run_out["toe_y_m"] = number(r.toe.y);
+    run_out["toe_x_m"] = number_or_null<json>(r.toe.x);
+    run_out["toe_y_m"] = number_or_null<json>(r.toe.y);
     return {{"run_out", std::move(run_out)}, {"gauges", std::move(gauges)}, {"crs_wkt", parts_->scene->crs.wkt}};
 }
 

@@ -144,6 +144,21 @@ TEST_F(Products, tables_of_a_run_that_was_changed_on_the_way_say_so_in_every_row
     EXPECT_THAT(test::read_text(folder.path() / "front.csv"), testing::Not(HasSubstr("changed")));
 }
 
+TEST_F(Products, tables_have_the_columns_that_other_programs_read) {
+    const auto header = [](const char* name) {
+        const std::string text = test::read_text(folder_->path() / name);
+        return text.substr(0, text.find('\n'));
+    };
+    EXPECT_EQ(header("run_out.csv"),
+              "run_out_along_flow_m,run_out_straight_m,at_least,toe_x_m,toe_y_m,drop_m,runout_angle_deg,"
+              "travel_angle_deg,front_chainage_m");
+    EXPECT_EQ(header("buildings.csv"),
+              "name,hit,first_hit_time_s,peak_force_kN,peak_impact_pressure_kPa,peak_dynamic_pressure_kPa,peak_depth_m,"
+              "filter_window_s,patch_edge_m,height_m,height_assumed,kind,impulse_kNs,failed_s,overtopped_m3,"
+              "first_overtopped_s,passed_m3,retained_m3,peak_retained_m3,peak_filling_height_m,removed_time_s,"
+              "peak_speed_mps,intensity");
+}
+
 TEST_F(Products, time_series_balances_its_volumes) {
     const auto rows = rows_of(test::read_text(folder_->path() / "timeseries.csv"));
     ASSERT_EQ(rows.size(), result_->observation.timeseries.size() + 1);
