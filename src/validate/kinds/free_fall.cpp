@@ -46,8 +46,9 @@ Result<Outcome> compute(const FallSpec& spec, const Setting& setting, const Watc
     material.building_friction_coefficient = 0;
     sim::Model model = sim::make_model(material, setting.solver, spec.spacing);
     sim::Ground ground(terrain, make_slice(terrain, width, spec.height), model.support_radius);
-    sim::State start =
-        state_at_rest(fill_block(-spec.cell, spec.height, spec.length, spec.width, spec.layers, spec.spacing));
+    const std::vector<LocalPoint> points =
+        fill_block(-spec.cell, spec.height, spec.length, spec.width, spec.layers, spec.spacing);
+    sim::State start = state_at_rest(points);
     for (std::uint32_t i = 0; i < start.count; ++i) start.velocity.x[i] = static_cast<float>(spec.speed);
     Trial trial({std::move(model), std::move(ground), std::move(start)}, watch);
     const sim::State& state = trial.state();
