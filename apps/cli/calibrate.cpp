@@ -1,7 +1,5 @@
-#include <algorithm>
 #include <filesystem>
 #include <memory>
-#include <thread>
 
 #include <fmt/format.h>
 
@@ -157,10 +155,8 @@ int calibrate_command(const CalibrateArguments& arguments) {
     const fs::path path =
         arguments.output.empty() ? default_output(input->short_name + ending) : fs::path(arguments.output);
 
-    const int cores = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
     calibrate::CalibrationOptions options;
-    const Result<SharedThreads> shared =
-        share_threads(arguments.threads, cores, static_cast<int>(plan->search.at_once));
+    const Result<SharedThreads> shared = share_threads(arguments.threads, static_cast<int>(plan->search.at_once));
     if (!shared) return fail(exit_code::bad_input, shared.error().message);
     options.runs_at_once = shared->runs_at_once;
     options.threads_per_run = shared->threads_per_run;

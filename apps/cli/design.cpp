@@ -7,7 +7,6 @@
 #include <memory>
 #include <optional>
 #include <string>
-#include <thread>
 #include <utility>
 
 #include <fmt/format.h>
@@ -186,9 +185,7 @@ int design_command(const DesignArguments& arguments) {
     if (!request) return refuse(exit_code::bad_input, request.error().message);
     const auto planned = design::plan_design(*request);
     if (!planned) return refuse(exit_code::bad_input, planned.error().message);
-    const int cores = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
-    const auto shared =
-        share_threads(arguments.threads, ranks.count() > 1 ? 1 : cores, static_cast<int>(planned->runs->count()));
+    const auto shared = share_threads(arguments.threads, static_cast<int>(planned->runs->count()), ranks.count());
     if (!shared) return refuse(exit_code::bad_input, shared.error().message);
 
     ThrottledProgress reporter(arguments.quiet || !ranks.first(), arguments.json && ranks.first());

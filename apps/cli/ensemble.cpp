@@ -1,13 +1,11 @@
 #include "ensemble/ensemble.hpp"
 
-#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <filesystem>
 #include <memory>
 #include <optional>
 #include <string>
-#include <thread>
 #include <utility>
 
 #include <fmt/format.h>
@@ -197,10 +195,8 @@ int write_results(const SceneInput& source, const ensemble::PlannedRuns& runs, c
 /// Sets the number of simultaneous runs.
 Status set_parallel_runs(const EnsembleArguments& arguments, const ensemble::PlannedRuns& runs, int ranks,
                          ensemble::EnsembleOptions& options) {
-    const int cores = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
     const std::size_t share = runs.count() / options.shard_count;
-    TALUS_ASSIGN(const SharedThreads shared,
-                 share_threads(arguments.threads, ranks > 1 ? 1 : cores, static_cast<int>(share)));
+    TALUS_ASSIGN(const SharedThreads shared, share_threads(arguments.threads, static_cast<int>(share), ranks));
     options.runs_at_once = shared.runs_at_once;
     options.threads_per_run = shared.threads_per_run;
     return {};

@@ -5,7 +5,6 @@
 #include <memory>
 #include <optional>
 #include <string>
-#include <thread>
 #include <utility>
 
 #include <fmt/format.h>
@@ -219,9 +218,8 @@ int risk_command(const RiskArguments& arguments) {
                               : fs::path(arguments.output);
     const auto study = risk::plan_study({*plan, source->source, source->name, *options, path, !arguments.compare});
     if (!study) return refuse(study.error());
-    const int cores = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
-    const auto shared = share_threads(arguments.threads, ranks.count() > 1 ? 1 : cores,
-                                      static_cast<int>(study->parts.front().runs->count()));
+    const auto shared =
+        share_threads(arguments.threads, static_cast<int>(study->parts.front().runs->count()), ranks.count());
     if (!shared) return refuse(shared.error());
 
     ThrottledProgress reporter(arguments.quiet || !ranks.first(), arguments.json && ranks.first());

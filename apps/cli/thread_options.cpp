@@ -1,6 +1,7 @@
 #include "thread_options.hpp"
 
 #include <algorithm>
+#include <thread>
 
 #include <fmt/format.h>
 
@@ -19,8 +20,9 @@ void add_thread_options(CLI::App& command, ThreadOptions& options, const char* w
         ->check(CLI::Range(1, 512));
 }
 
-Result<SharedThreads> share_threads(const ThreadOptions& options, int default_threads, int runs) {
-    const int threads = options.threads.value_or(default_threads);
+Result<SharedThreads> share_threads(const ThreadOptions& options, int runs, int ranks) {
+    const int cores = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
+    const int threads = options.threads.value_or(ranks > 1 ? 1 : cores);
     const int wanted = options.parallel_runs.value_or(threads);
     if (wanted > threads) {
         return Error{

@@ -22,7 +22,8 @@ struct SharedThreads {
 };
 
 /// Shares threads among at most `runs` runs, at least one. One run on several threads is slower than as many runs on
-/// one thread each. Refuses more runs side by side than threads.
-[[nodiscard]] Result<SharedThreads> share_threads(const ThreadOptions& options, int default_threads, int runs);
+/// one thread each. Refuses more runs side by side than threads. By default a process has all cores, and one thread
+/// where it is one of several `ranks`.
+[[nodiscard]] Result<SharedThreads> share_threads(const ThreadOptions& options, int runs, int ranks = 1);
 
 }  // namespace talus::cli

@@ -25,7 +25,6 @@
 #include "products/results_json.hpp"
 #include "products/text_file.hpp"
 #include "progress.hpp"
-#include "run/threads.hpp"
 #include "run/time_left.hpp"
 #include "thread_options.hpp"
 #include "validate/page.hpp"
@@ -210,8 +209,7 @@ int validate_command(const ValidateArguments& arguments) {
         return print_result(list_text(*cases));
     }
 
-    const Result<SharedThreads> threads =
-        share_threads(arguments.threads, run::Threads().count(), static_cast<int>(cases->size()));
+    const Result<SharedThreads> threads = share_threads(arguments.threads, static_cast<int>(cases->size()));
     if (!threads) return fail(exit_code::bad_input, threads.error().message);
     if (arguments.json) (void)print(progress_json(0, cases->size(), std::numeric_limits<double>::quiet_NaN()) + "\n");
     const std::vector<CaseResult> results = compute(*cases, arguments, *threads, watch);

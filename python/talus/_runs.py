@@ -15,6 +15,7 @@ import numpy as np
 from . import _arguments as arguments
 from . import _program
 from ._library import InputError
+from .maps import Map, read_geotiff
 from .simulation import Progress, Settings
 from .table import Table
 
@@ -59,6 +60,21 @@ class Folder:
         """The worst of all runs by check, as `verdict` of docs/results.md."""
         found: dict[str, Any] = self._facts["verdict"]
         return found
+
+
+class FolderOfMaps(Folder):
+    """Results with maps."""
+
+    @property
+    def map_names(self) -> list[str]:
+        """Of the maps: "peak_depth_p95", "individual_risk", ..."""
+        return sorted(path.stem for path in self.folder.glob("*.tif"))
+
+    def map(self, name: str) -> Map:
+        """The map of that name."""
+        if arguments.text("name", name).decode() not in self.map_names:
+            raise InputError(f"name = {name!r}: must be one of {', '.join(self.map_names)}")
+        return read_geotiff(self.folder / f"{name}.tif")
 
 
 Made = TypeVar("Made", bound=Folder)

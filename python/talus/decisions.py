@@ -11,13 +11,26 @@ import numpy as np
 
 from . import _arguments as arguments
 from ._library import InputError
-from ._runs import Folder, Scene, Vary, command_words, numbers, run, share_done, with_warnings
-from .maps import Map, read_geotiff
+from ._runs import Folder, FolderOfMaps, Scene, Vary, command_words, numbers, run, share_done, with_warnings
 from .simulation import Progress, Settings
 from .table import Table
 
 
-class Risk(Folder):
+class _Decision(Folder):
+    numbers: dict[str, Any]
+
+    @property
+    def assumptions(self) -> list[str]:
+        """On which the numbers rest."""
+        return [str(text) for text in self.numbers["assumptions"]]
+
+    @property
+    def limits(self) -> list[str]:
+        """What the numbers leave out."""
+        return [str(text) for text in self.numbers["limits"]]
+
+
+class Risk(_Decision, FolderOfMaps):
     """What is at risk, from risk() or options(), or from the folder that `talus risk` or `talus options` wrote."""
 
     def __init__(self, folder: str | os.PathLike[str]) -> None:
@@ -47,27 +60,6 @@ class Risk(Folder):
         """Cost and difference from the ground as it is, a row per option: of options()."""
         return self._table("options.csv")
 
-    @property
-    def assumptions(self) -> list[str]:
-        """On which the numbers rest."""
-        return [str(text) for text in self.numbers["assumptions"]]
-
-    @property
-    def limits(self) -> list[str]:
-        """What the numbers leave out."""
-        return [str(text) for text in self.numbers["limits"]]
-
-    @property
-    def map_names(self) -> list[str]:
-        """Of the maps: "individual_risk", "debris_frequency", ..."""
-        return sorted(path.stem for path in self.folder.glob("*.tif"))
-
-    def map(self, name: str) -> Map:
-        """The map of that name."""
-        if arguments.text("name", name).decode() not in self.map_names:
-            raise InputError(f"name = {name!r}: must be one of {', '.join(self.map_names)}")
-        return read_geotiff(self.folder / f"{name}.tif")
-
     def __repr__(self) -> str:
         per, deaths = self.numbers["per"], self.total["deaths"]
         hit = f"{self.total['impacts']['value']:.3g} impacts per {per}"
@@ -75,7 +67,7 @@ class Risk(Folder):
         return f"<talus.Risk: {hit}{lost}, in {self.folder}; {self.verdict['text']}>"
 
 
-class Design(Folder):
+class Design(_Decision):
     """How high a barrier must be and what it must bear, from design() or from the folder that `talus design` wrote."""
 
     def __init__(self, folder: str | os.PathLike[str]) -> None:
@@ -110,16 +102,6 @@ class Design(Folder):
     def sheet(self) -> Path:
         """The page to print."""
         return self.folder / "design.html"
-
-    @property
-    def assumptions(self) -> list[str]:
-        """On which the numbers rest."""
-        return [str(text) for text in self.numbers["assumptions"]]
-
-    @property
-    def limits(self) -> list[str]:
-        """What the numbers leave out."""
-        return [str(text) for text in self.numbers["limits"]]
 
     def __repr__(self) -> str:
         high = "no height is enough" if self.least_height is None else f"{self.least_height:g} m"

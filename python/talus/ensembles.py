@@ -8,13 +8,12 @@ from typing import Any, Mapping, Sequence
 
 from . import _arguments as arguments
 from ._library import InputError
-from ._runs import Folder, Scene, Vary, command_words, numbers, run, share_done, with_warnings
-from .maps import Map, read_geotiff
+from ._runs import Folder, FolderOfMaps, Scene, Vary, command_words, numbers, run, share_done, with_warnings
 from .simulation import Progress, Settings
 from .table import Table
 
 
-class Ensemble(Folder):
+class Ensemble(FolderOfMaps):
     """The results of an ensemble, from ensemble() or from the folder that `talus ensemble` wrote."""
 
     def __init__(self, folder: str | os.PathLike[str]) -> None:
@@ -37,17 +36,6 @@ class Ensemble(Folder):
     def buildings(self) -> Table:
         """Probability of a hit, and of pressures, per building."""
         return self._table("buildings.csv")
-
-    @property
-    def map_names(self) -> list[str]:
-        """Of the maps: "probability_depth_0.5m", "peak_depth_p95", ..."""
-        return sorted(path.stem for path in self.folder.glob("*.tif"))
-
-    def map(self, name: str) -> Map:
-        """The map of that name."""
-        if arguments.text("name", name).decode() not in self.map_names:
-            raise InputError(f"name = {name!r}: must be one of {', '.join(self.map_names)}")
-        return read_geotiff(self.folder / f"{name}.tif")
 
     def __repr__(self) -> str:
         done, of = self.statistics["complete"], self.statistics["runs"]

@@ -52,6 +52,15 @@ GDALDatasetUniquePtr warped(GDALDataset& data, const std::vector<std::string>& w
     return GDALDatasetUniquePtr(GDALDataset::FromHandle(GDALWarp("", nullptr, 1, &source, options.get(), nullptr)));
 }
 
+/// Words of warped() for a picture in memory of this part of the ground.
+std::vector<std::string> cut_to(const Extent& extent, int columns, int rows) {
+    std::vector<std::string> words{"-of", "MEM", "-ts", std::to_string(columns), std::to_string(rows), "-te"};
+    for (const double edge : {extent.x_min, extent.y_min, extent.x_max, extent.y_max}) {
+        words.push_back(fmt::format("{:.12g}", edge));
+    }
+    return words;
+}
+
 std::string wkt_of(const OGRSpatialReference& reference) {
     char* text = nullptr;
     reference.exportToWkt(&text);
@@ -186,20 +195,8 @@ Result<Orthophoto> read_orthophoto(const std::string& file, const Crs& crs, cons
     Orthophoto photo;
     photo.columns = std::clamp(static_cast<int>(std::lround(width / pixel)), 1, max_pixels);
     photo.rows = std::clamp(static_cast<int>(std::lround(height / pixel)), 1, max_pixels);
-    const auto number = [](double value) { return fmt::format("{:.12g}", value); };
-    std::vector<std::string> words{"-of",
-                                   "MEM",
-                                   "-te",
-                                   number(extent.x_min),
-                                   number(extent.y_min),
-                                   number(extent.x_max),
-                                   number(extent.y_max),
-                                   "-ts",
-                                   std::to_string(photo.columns),
-                                   std::to_string(photo.rows),
-                                   "-r",
-                                   "bilinear",
-                                   "-dstalpha"};
+    std::vector<std::string> words = cut_to(extent, photo.columns, photo.rows);
+    words.insert(words.end(), {"-r", "bilinear", "-dstalpha"});
     if (!picture.target_crs.empty()) words.insert(words.end(), {"-t_srs", picture.target_crs});
     const GDALDatasetUniquePtr cut = warped(*picture.view, words);
     if (!cut || messages.has_failure()) {
@@ -244,21 +241,8 @@ Result<PictureOverlay> coloured_values(GDALDataset& file, const OverlayGround& g
     const double pixel = std::max(extent.width(), extent.height()) / std::min(limits.pixels, 2048);
     made.columns = std::max(1, static_cast<int>(std::lround(extent.width() / pixel)));
     made.rows = std::max(1, static_cast<int>(std::lround(extent.height() / pixel)));
-    const auto number = [](double value) { return fmt::format("{:.12g}", value); };
-    std::vector<std::string> words{"-of",
-                                   "MEM",
-                                   "-ot",
-                                   "Float64",
-                                   "-dstnodata",
-                                   "nan",
-                                   "-te",
-                                   number(extent.x_min),
-                                   number(extent.y_min),
-                                   number(extent.x_max),
-                                   number(extent.y_max),
-                                   "-ts",
-                                   std::to_string(made.columns),
-                                   std::to_string(made.rows)};
+    std::vector<std::string> words = cut_to(extent, made.columns, made.rows);
+    words.insert(words.end(), {"-ot", "Float64", "-dstnodata", "nan"});
     if (!target.IsEmpty() && file.GetSpatialRef() != nullptr) {
         words.insert(words.end(), {"-t_srs", wkt_of(target)});
     } else if (!target.IsEmpty()) {

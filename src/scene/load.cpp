@@ -153,12 +153,16 @@ Status load_terrain(const ParsedScene& parsed, Scene& scene) {
     return {};
 }
 
-void note_changes(const std::string& label, const geo::PolygonLayer& layer, Scene& scene) {
-    if (!layer.reprojection.empty()) scene.notes.push_back(label + ": " + layer.reprojection);
-    if (layer.closed_lines == 0) return;
-    scene.notes.push_back(layer.closed_lines == 1
-                              ? label + ": a closed line is taken as a polygon"
-                              : fmt::format("{}: {} closed lines are taken as polygons", label, layer.closed_lines));
+Result<geo::PolygonLayer> load_polygons(const std::string& label, const std::string& file, const std::string& layer,
+                                        Scene& scene) {
+    TALUS_ASSIGN(geo::PolygonLayer read, geo::read_polygons(file, layer, scene.crs));
+    record_input(label, file, scene);
+    if (!read.reprojection.empty()) scene.notes.push_back(label + ": " + read.reprojection);
+    if (read.closed_lines == 1) scene.notes.push_back(label + ": a closed line is taken as a polygon");
+    if (read.closed_lines > 1) {
+        scene.notes.push_back(fmt::format("{}: {} closed lines are taken as polygons", label, read.closed_lines));
+    }
+    return read;
 }
 
 void record_input(const std::string& role, const std::string& name, Scene& scene) {

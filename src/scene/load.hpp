@@ -65,8 +65,10 @@ namespace talus::scene {
 /// Notes what its file says about a terrain beside its elevations.
 void note_terrain_file(const geo::TerrainFrame& frame, Scene& scene);
 
-/// Notes what was done to the polygons of a file: another reference system, closed lines. `label`: "zoom".
-void note_changes(const std::string& label, const geo::PolygonLayer& layer, Scene& scene);
+/// Reads polygons, adds their file to scene.inputs and notes what was done to them: another reference system, closed
+/// lines. `label`: "zoom".
+[[nodiscard]] Result<geo::PolygonLayer> load_polygons(const std::string& label, const std::string& file,
+                                                      const std::string& layer, Scene& scene);
 
 /// Adds the file, and for a Shapefile the files that belong to it, to scene.inputs.
 void record_input(const std::string& role, const std::string& path, Scene& scene);

@@ -29,10 +29,8 @@ Status load_one(const ParsedScene& parsed, std::size_t index, Scene& scene) {
         bed.depth_raster = std::make_shared<const Grid<float>>(std::move(read->grid));
     }
     if (!spec.file.empty()) {
-        const Result<geo::PolygonLayer> layer = read_polygons(spec.file, spec.layer, scene.crs);
+        const Result<geo::PolygonLayer> layer = load_polygons(label, spec.file, spec.layer, scene);
         if (!layer) return refused("file", layer.error());
-        record_input(label, spec.file, scene);
-        note_changes(label, *layer, scene);
         for (std::size_t feature = 0; feature < layer->features.size(); ++feature) {
             double depth = spec.depth.value_or(0);
             if (!spec.depth_attribute.empty()) {

@@ -181,10 +181,8 @@ Status load_mesh_buildings(const ParsedScene& parsed, Scene& scene, std::size_t&
 
 Status load_footprints(const ParsedScene& parsed, Scene& scene, std::size_t& outside) {
     const params::BuildingsSpec& spec = scene.spec.buildings;
-    const Result<geo::PolygonLayer> layer = read_polygons(spec.file, spec.layer, scene.crs);
+    const Result<geo::PolygonLayer> layer = load_polygons("buildings", spec.file, spec.layer, scene);
     if (!layer) return Error{parsed.at("buildings.file") + ": " + layer.error().message};
-    record_input("buildings", spec.file, scene);
-    note_changes("buildings", *layer, scene);
     TALUS_TRY(check_attribute(parsed, "buildings.height_attribute", spec.height_attribute, *layer));
     TALUS_TRY(check_attribute(parsed, "buildings.name_attribute", spec.name_attribute, *layer));
     TALUS_TRY(check_attribute(parsed, "buildings.resistance_attribute", spec.resistance_attribute, *layer));

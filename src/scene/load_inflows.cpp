@@ -37,10 +37,8 @@ Status load_area(const params::InflowSpec& spec, const std::string& at, const st
         }
         inflow.area.push_back({spec.polygon, {}});
     } else {
-        const Result<geo::PolygonLayer> layer = read_polygons(spec.polygon_file, spec.layer, scene.crs);
+        const Result<geo::PolygonLayer> layer = load_polygons(label, spec.polygon_file, spec.layer, scene);
         if (!layer) return Error{at + ": " + layer.error().message};
-        record_input(label, spec.polygon_file, scene);
-        note_changes(label, *layer, scene);
         for (const geo::PolygonFeature& feature : layer->features) {
             inflow.area.insert(inflow.area.end(), feature.parts.begin(), feature.parts.end());
         }

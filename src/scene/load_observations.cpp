@@ -75,13 +75,11 @@ Status check_observed(const ParsedScene& parsed, const Scene& scene) {
 Status load_outlines(const ParsedScene& parsed, const std::vector<params::OutlineSpec>& specs, const char* section,
                      const char* what, std::vector<std::vector<Polygon>>& outlines, Scene& scene) {
     for (std::size_t i = 0; i < specs.size(); ++i) {
-        const Result<geo::PolygonLayer> layer = read_polygons(specs[i].file, specs[i].layer, scene.crs);
+        const std::string label = fmt::format("{} {}", what, i + 1);
+        const Result<geo::PolygonLayer> layer = load_polygons(label, specs[i].file, specs[i].layer, scene);
         if (!layer) {
             return Error{parsed.at(fmt::format("{}[{}].file", section, i)) + ": " + layer.error().message};
         }
-        const std::string label = fmt::format("{} {}", what, i + 1);
-        record_input(label, specs[i].file, scene);
-        note_changes(label, *layer, scene);
         std::vector<Polygon>& outline = outlines.emplace_back();
         for (const geo::PolygonFeature& feature : layer->features) {
             outline.insert(outline.end(), feature.parts.begin(), feature.parts.end());

@@ -187,10 +187,8 @@ Result<terrain::Release> load_release(const ParsedScene& parsed, std::size_t ind
     release.name = spec.name;
     release.spec = spec;
     if (!spec.file.empty()) {
-        const Result<geo::PolygonLayer> layer = read_polygons(spec.file, spec.layer, scene.crs);
+        const Result<geo::PolygonLayer> layer = load_polygons(label, spec.file, spec.layer, scene);
         if (!layer) return refused("file", layer.error());
-        record_input(label, spec.file, scene);
-        note_changes(label, *layer, scene);
         for (std::size_t feature = 0; feature < layer->features.size(); ++feature) {
             const Result<double> thickness = feature_thickness(spec, *layer, feature);
             if (!thickness) return refused("thickness_attribute", thickness.error());

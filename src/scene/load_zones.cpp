@@ -44,9 +44,7 @@ Result<std::vector<Polygon>> read_outline(const params::ZoneSpec& spec, const st
         parts.push_back(*polygon);
         return parts;
     }
-    TALUS_ASSIGN(const geo::PolygonLayer layer, read_polygons(spec.file, spec.layer, scene.crs));
-    record_input(label, spec.file, scene);
-    note_changes(label, layer, scene);
+    TALUS_ASSIGN(const geo::PolygonLayer layer, load_polygons(label, spec.file, spec.layer, scene));
     for (const geo::PolygonFeature& feature : layer.features) {
         parts.insert(parts.end(), feature.parts.begin(), feature.parts.end());
     }

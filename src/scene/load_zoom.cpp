@@ -35,10 +35,8 @@ Result<Polygon> area_around(const std::string& at, const Scene& scene) {
 
 Result<Polygon> area_from_file(const std::string& at, Scene& scene) {
     const params::ZoomSpec& spec = scene.spec.zoom;
-    const Result<geo::PolygonLayer> layer = read_polygons(spec.polygon_file, spec.layer, scene.crs);
+    const Result<geo::PolygonLayer> layer = load_polygons("zoom", spec.polygon_file, spec.layer, scene);
     if (!layer) return Error{at + ": " + layer.error().message};
-    record_input("zoom", spec.polygon_file, scene);
-    note_changes("zoom", *layer, scene);
     std::vector<Polygon> parts;
     for (const geo::PolygonFeature& feature : layer->features) {
         parts.insert(parts.end(), feature.parts.begin(), feature.parts.end());

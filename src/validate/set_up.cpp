@@ -96,6 +96,21 @@ std::vector<LocalPoint> fill_lattice(const Incline& incline, double spacing, dou
     return points;
 }
 
+std::vector<LocalPoint> fill_block(double head, double bottom, int columns, int rows, int layers, double spacing) {
+    const double width = rows * spacing;
+    std::vector<LocalPoint> points;
+    for (int k = 0; k < layers; ++k) {
+        for (int j = 0; j < rows; ++j) {
+            for (int i = 0; i < columns; ++i) {
+                points.push_back({static_cast<float>(head - (i + 0.5) * spacing),
+                                  static_cast<float>(-width / 2 + (j + 0.5) * spacing),
+                                  static_cast<float>(bottom + (k + 0.5) * spacing)});
+            }
+        }
+    }
+    return points;
+}
+
 sim::State state_at_rest(const std::vector<LocalPoint>& points) {
     sim::State state;
     state.resize(points.size());
@@ -119,6 +134,12 @@ sim::State state_under_weight(const sim::Model& model, const sim::Ground& ground
     // Debris with free sides has less pressure there.
     find_pressures(model, ground, state);
     return state;
+}
+
+double momentum_along(const sim::Model& model, const sim::State& state) {
+    double sum = 0;
+    for (std::uint32_t i = 0; i < state.count; ++i) sum += state.velocity.x[i];
+    return sum * model.particle_mass();
 }
 
 namespace {

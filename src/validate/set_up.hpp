@@ -67,6 +67,11 @@ struct GateLeaf {
                                                    int columns_along, double across, int columns_across,
                                                    const std::function<double(double, double)>& thickness);
 
+/// Particles on a lattice along the world's axes: so many columns behind x = `head` and layers above z = `bottom`, in
+/// m, and so many rows on both sides of the x axis.
+[[nodiscard]] std::vector<LocalPoint> fill_block(double head, double bottom, int columns, int rows, int layers,
+                                                 double spacing);
+
 /// A state at rest of particles at these places, without any release, without pressure.
 [[nodiscard]] sim::State state_at_rest(const std::vector<LocalPoint>& points);
 
@@ -75,6 +80,9 @@ struct GateLeaf {
 [[nodiscard]] sim::State state_under_weight(const sim::Model& model, const sim::Ground& ground,
                                             const std::vector<LocalPoint>& points, const Incline& incline,
                                             const std::function<double(double, double)>& thickness);
+
+/// Of all debris along x, kg m/s.
+[[nodiscard]] double momentum_along(const sim::Model& model, const sim::State& state);
 
 enum class OnFault {
     stop,

@@ -1,39 +1,18 @@
 // The examples of the npm package talus-engine in Chromium. Usage: node engine_package_test.mjs OUTPUT_FOLDER PACKAGE SCENE, the package
 // unpacked, a packed scene. Exit code 77: skipped, the browser, its driver or the package is missing.
 import { spawnSync } from "node:child_process";
-import { cpSync, existsSync, mkdirSync, readFileSync, realpathSync, rmSync, statSync, symlinkSync } from "node:fs";
-import { createServer } from "node:http";
-import { extname, join, resolve } from "node:path";
+import { cpSync, existsSync, mkdirSync, readFileSync, realpathSync, rmSync, symlinkSync } from "node:fs";
+import { join, resolve } from "node:path";
 import { fileURLToPath } from "node:url";
+import { end, findChromium, Score, serveFolder, skip, softwareWebGL } from "./chromium.mjs";
 
 const [, , folder, unpacked, scene] = process.argv;
 const output = resolve(folder);
 const web = fileURLToPath(new URL("../../web", import.meta.url));
-const browserPath = process.env.TALUS_BROWSER ?? "/usr/bin/chromium";
-function skip(reason) {
-  console.log(`SKIPPED browser.engine_package: ${reason}`);
-  process.exit(77);
-}
-if (!existsSync(join(unpacked, "index.js"))) skip(`no package at ${unpacked}; scripts/test.sh publish builds the engine and packs it`);
-if (!existsSync(browserPath)) skip(`no browser at ${browserPath}; install chromium or set TALUS_BROWSER`);
-let chromium;
-try {
-  ({ chromium } = await import("playwright-core"));
-} catch {
-  skip("playwright-core is not installed; run `npm ci` in tests/browser");
-}
-let passed = 0;
-let failed = 0;
-async function check(name, work) {
-  try {
-    await work();
-    ++passed;
-    console.log(`ok      ${name}`);
-  } catch (error) {
-    ++failed;
-    console.log(`FAILED  ${name}\n${error.stack ?? error}`);
-  }
-}
+if (!existsSync(join(unpacked, "index.js"))) skip("engine_package", `no package at ${unpacked}; scripts/test.sh publish builds the engine and packs it`);
+const launch = await findChromium("engine_package");
+const score = new Score();
+const { check } = score;
 
 /** A folder as a reader of the README makes it. */
 function site(name, modules) {
@@ -46,17 +25,9 @@ function site(name, modules) {
   for (const [module, at] of Object.entries(modules)) symlinkSync(realpathSync(at), join(made, "node_modules", module));
   return made;
 }
-const types = { ".html": "text/html", ".js": "text/javascript", ".css": "text/css", ".wasm": "application/wasm", ".json": "application/json" };
-const server = createServer((request, response) => {
-  const path = join(output, decodeURIComponent(new URL(request.url, "http://localhost").pathname).replace(/\/$/, "/index.html"));
-  if (!existsSync(path) || !statSync(path).isFile()) return response.writeHead(404).end();
-  response.writeHead(200, { "Content-Type": types[extname(path)] ?? "application/octet-stream" }).end(readFileSync(path));
-});
-await new Promise((done) => server.listen(0, "127.0.0.1", done));
-const base = `http://127.0.0.1:${server.address().port}/`;
-const browser = await chromium.launch({ executablePath: browserPath, args: ["--headless", "--no-sandbox", "--use-angle=swiftshader",
-  "--enable-unsafe-swiftshader", "--ignore-gpu-blocklist", "--webgl-msaa-sample-count=0", "--disable-background-networking",
-  "--disable-component-update", "--no-first-run"] });
+const server = await serveFolder(output);
+const { base } = server;
+const browser = await launch(softwareWebGL);
 
 /** Opens an example. `foreign`: requests that left this server, `problems`: what the console said. */
 async function open(name) {
@@ -148,5 +119,4 @@ try {
   await browser.close();
   server.close();
 }
-console.log(`${passed} passed, ${failed} failed`);
-process.exit(failed === 0 && passed > 0 ? 0 : 1);
+end(score);

@@ -2,38 +2,17 @@
 // Usage: node publish_test.mjs OUTPUT_FOLDER TALUS. Exit code 77: skipped, the browser or its driver is missing.
 import { spawnSync } from "node:child_process";
 import { existsSync, mkdirSync, readFileSync, rmSync, statSync, writeFileSync } from "node:fs";
-import { createServer } from "node:http";
-import { extname, join, resolve } from "node:path";
+import { join, resolve } from "node:path";
 import { fileURLToPath, pathToFileURL } from "node:url";
+import { end, findChromium, Score, serve, serveFolder, softwareWebGL } from "./chromium.mjs";
 import { clickGround, startServer, until } from "./twin/harness.mjs";
 
 const [, , folder, talus] = process.argv;
 const output = resolve(folder);
-const browserPath = process.env.TALUS_BROWSER ?? "/usr/bin/chromium";
-function skip(reason) {
-  console.log(`SKIPPED browser.publish: ${reason}`);
-  process.exit(77);
-}
-if (!existsSync(browserPath)) skip(`no browser at ${browserPath}; install chromium or set TALUS_BROWSER`);
-let chromium;
-try {
-  ({ chromium } = await import("playwright-core"));
-} catch {
-  skip("playwright-core is not installed; run `npm ci` in tests/browser");
-}
+const launch = await findChromium("publish");
 mkdirSync(output, { recursive: true });
-let passed = 0;
-let failed = 0;
-async function check(name, work) {
-  try {
-    await work();
-    ++passed;
-    console.log(`ok      ${name}`);
-  } catch (error) {
-    ++failed;
-    console.log(`FAILED  ${name}\n${error.stack ?? error}`);
-  }
-}
+const score = new Score();
+const { check } = score;
 const same = (found, wanted, what) => {
   if (found !== wanted) throw new Error(`${what}: ${found}, not ${wanted}`);
 };
@@ -47,9 +26,7 @@ if (made.status !== 0) throw new Error(`talus publish: ${made.status}\n${made.st
 const served = run("publish", "-o", site, "--folder", "--force", "--without-engine", ...small);
 if (served.status !== 0) throw new Error(`talus publish --folder: ${served.status}\n${served.stderr}`);
 
-const browser = await chromium.launch({ executablePath: browserPath, args: ["--headless", "--no-sandbox", "--use-angle=swiftshader",
-  "--enable-unsafe-swiftshader", "--ignore-gpu-blocklist", "--webgl-msaa-sample-count=0", "--disable-background-networking",
-  "--disable-component-update", "--no-first-run"] });
+const browser = await launch(softwareWebGL);
 
 /** Opens a twin; `asked`: addresses that it asked for, `problems`: what the console said. */
 async function open(address, viewport, settings = {}) {
@@ -248,11 +225,10 @@ try {
   });
 
   await check("a server that names another character set does not spoil it", async () => {
-    const server = createServer((request, response) => response.writeHead(request.url === "/" ? 200 : 404, { "Content-Type": "text/html; charset=iso-8859-1" })
+    const server = await serve((request, response) => response.writeHead(request.url === "/" ? 200 : 404, { "Content-Type": "text/html; charset=iso-8859-1" })
       .end(request.url === "/" ? readFileSync(file) : ""));
-    await new Promise((done) => server.listen(0, "127.0.0.1", done));
     try {
-      const web = await open(`http://127.0.0.1:${server.address().port}/`, { width: 900, height: 700 });
+      const web = await open(server.base, { width: 900, height: 700 });
       if (!(await web.page.locator("h1").innerText()).startsWith("Sham Tseng")) throw new Error("another title");
       await web.close();
     } finally {
@@ -261,17 +237,10 @@ try {
   });
 
   await check("a folder opens from a web server, and asks for its own files alone", async () => {
-    const types = { ".html": "text/html", ".js": "text/javascript", ".css": "text/css", ".bin": "application/octet-stream" };
-    const server = createServer((request, response) => {
-      const path = join(site, request.url === "/" ? "index.html" : request.url.slice(1));
-      if (!existsSync(path)) return response.writeHead(404).end();
-      response.writeHead(200, { "Content-Type": types[extname(path)] ?? "application/octet-stream" }).end(readFileSync(path));
-    });
-    await new Promise((done) => server.listen(0, "127.0.0.1", done));
-    const base = `http://127.0.0.1:${server.address().port}/`;
+    const server = await serveFolder(site);
     try {
-      const web = await open(base, { width: 1200, height: 800 });
-      silent(web, (url) => ["", "page.js", "page.css", "tape.bin", "favicon.ico"].some((name) => url === base + name) || url.startsWith("blob:"));
+      const web = await open(server.base, { width: 1200, height: 800 });
+      silent(web, (url) => ["", "page.js", "page.css", "tape.bin", "favicon.ico"].some((name) => url === server.base + name) || url.startsWith("blob:"));
       await web.close();
     } finally {
       server.close();
@@ -332,5 +301,4 @@ try {
 } finally {
   await browser.close();
 }
-console.log(`${passed} passed, ${failed} failed`);
-process.exit(failed === 0 && passed > 0 ? 0 : 1);
+end(score);

@@ -1,45 +1,20 @@
 // Opens a report in Chromium from disk, as its reader would, and looks at what is there.
 // Usage: node report_test.mjs REPORT.html OUTPUT_FOLDER. Exit code 77: skipped, the browser or its driver is missing.
 import assert from "node:assert/strict";
-import { existsSync, mkdirSync, readFileSync } from "node:fs";
+import { mkdirSync, readFileSync } from "node:fs";
 import { join, resolve } from "node:path";
 import { inflateSync } from "node:zlib";
 import { pathToFileURL } from "node:url";
+import { end, findChromium, Score } from "./chromium.mjs";
 import { within } from "./twin/harness.mjs";
 
 const [, , reportFile, outputFolder] = process.argv;
-const browserPath = process.env.TALUS_BROWSER ?? "/usr/bin/chromium";
-
-function skip(reason) {
-  console.log(`SKIPPED browser.report: ${reason}`);
-  process.exit(77);
-}
-if (!existsSync(browserPath)) skip(`no browser at ${browserPath}; install chromium or set TALUS_BROWSER`);
-let chromium;
-try {
-  ({ chromium } = await import("playwright-core"));
-} catch {
-  skip("playwright-core is not installed; run `npm ci` in tests/browser");
-}
+const launch = await findChromium("report");
 
 mkdirSync(outputFolder, { recursive: true });
-const browser = await chromium.launch({
-  executablePath: browserPath,
-  args: ["--headless", "--no-sandbox", "--disable-gpu", "--disable-background-networking", "--disable-component-update",
-    "--no-first-run"],
-});
-let failed = 0;
-let passed = 0;
-async function check(name, body) {
-  try {
-    await within((async () => body())(), "the end of this check");
-    ++passed;
-    console.log(`ok      ${name}`);
-  } catch (error) {
-    ++failed;
-    console.log(`FAILED  ${name}\n        ${error.message.split("\n").join("\n        ")}`);
-  }
-}
+const browser = await launch(["--disable-gpu"]);
+const score = new Score();
+const check = (name, body) => score.check(name, () => within((async () => body())(), "the end of this check"));
 
 // Number of different colours and share of the commonest in a part of the page, read from pixels on screen.
 async function colours(page, clip) {
@@ -238,5 +213,4 @@ await check("nothing but the file itself is asked for", () => {
 });
 
 await browser.close();
-console.log(`${passed} passed, ${failed} failed`);
-process.exit(failed === 0 ? 0 : 1);
+end(score);

@@ -4,7 +4,8 @@
 // the page is looked at goes slowly.
 // Exit code 77: skipped, the browser or its driver is missing.
 import { resolve } from "node:path";
-import { existsSync, Run, waitedFor, within } from "./twin/harness.mjs";
+import { end, findChromium, softwareWebGL } from "./chromium.mjs";
+import { Run, waitedFor, within } from "./twin/harness.mjs";
 import { testBackanalysis } from "./twin/backanalysis.mjs";
 import { testBarrier } from "./twin/barrier.mjs";
 import { testDepthAveraged } from "./twin/depth_averaged.mjs";
@@ -26,23 +27,8 @@ import { testTriggers } from "./twin/triggers.mjs";
 import { testVisible } from "./twin/visible.mjs";
 
 const [, , output, ...command] = process.argv;
-const browserPath = process.env.TALUS_BROWSER ?? "/usr/bin/chromium";
-function skip(reason) {
-  console.log(`SKIPPED browser.twin: ${reason}`);
-  process.exit(77);
-}
-if (!existsSync(browserPath)) skip(`no browser at ${browserPath}; install chromium or set TALUS_BROWSER`);
-let chromium;
-try {
-  ({ chromium } = await import("playwright-core"));
-} catch {
-  skip("playwright-core is not installed; run `npm ci` in tests/browser");
-}
-
-// WebGL without a graphics card: SwiftShader has to be asked for. Smooth edges would take it twice as long.
-const browser = await chromium.launch({ executablePath: browserPath, args: ["--headless", "--no-sandbox", "--use-angle=swiftshader",
-  "--enable-unsafe-swiftshader", "--ignore-gpu-blocklist", "--webgl-msaa-sample-count=0", "--disable-background-networking",
-  "--disable-component-update", "--no-first-run", ...(process.env.TALUS_SITE ? ["--disable-features=LocalNetworkAccessChecks"] : [])] });
+const launch = await findChromium("twin");
+const browser = await launch([...softwareWebGL, ...(process.env.TALUS_SITE ? ["--disable-features=LocalNetworkAccessChecks"] : [])]);
 // Before the limit of ctest, which would not say where it stood.
 setTimeout(() => {
   console.log(`FAILED  not over after 1100 s; last waited for: ${waitedFor()}`);
@@ -66,5 +52,4 @@ try {
   await within(browser.close(), "the end of the browser", 60_000).catch((error) => console.log(error.message));
   await run.stopServers();
 }
-console.log(`${run.passed} passed, ${run.failed} failed`);
-process.exit(run.failed === 0 && run.passed > 0 ? 0 : 1);
+end(run);

@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include "core/temporary_folder.hpp"
+#include "support/value_of.hpp"
 
 namespace talus {
 namespace {
@@ -16,11 +17,7 @@ using testing::HasSubstr;
 
 class CsvTables : public testing::Test {
   protected:
-    CsvTable read(const std::string& text) {
-        auto table = read_csv_table(write(text), 100);
-        EXPECT_TRUE(table) << table.error().message;
-        return table ? *table : CsvTable{};
-    }
+    CsvTable read(const std::string& text) { return test::value_of(read_csv_table(write(text), 100)); }
     std::string refusal(const std::string& text) {
         const auto table = read_csv_table(write(text), 3);
         return table ? "accepted" : table.error().message;

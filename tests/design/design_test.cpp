@@ -59,11 +59,7 @@ class DesignTest : public scene::SceneFolder {
         EXPECT_TRUE(result) << (result ? "" : result.error().message);
         return **std::move(result);
     }
-    [[nodiscard]] static Design planned(const DesignRequest& request) {
-        auto design = plan_design(request);
-        EXPECT_TRUE(design) << (design ? "" : design.error().message);
-        return *std::move(design);
-    }
+    [[nodiscard]] static Design planned(const DesignRequest& request) { return test::value_of(plan_design(request)); }
     [[nodiscard]] static std::string error_of(const DesignRequest& request) {
         const auto design = plan_design(request);
         return design ? "(it was planned)" : design.error().message;

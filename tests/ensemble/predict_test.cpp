@@ -151,12 +151,11 @@ TEST_F(ObservedScene, has_a_value_and_a_prediction_for_every_observation) {
         "[[deposit_outline]]\nfile = \"outline.geojson\"\n"
         "[[affected_area]]\nfile = \"outline.geojson\"\n"
         "[[elevation_change]]\nfile = \"dem.tif\"\n");
-    const auto scene = scene::load_scene(folder / "scene.toml");
-    ASSERT_TRUE(scene) << scene.error().message;
-    const auto observed = observed_values(*scene);
+    const scene::Scene scene = loaded();
+    const auto observed = observed_values(scene);
     ASSERT_EQ(observed.size(), 10u);
     EXPECT_DOUBLE_EQ(observed[0].uncertainty, 1);  // a fifth of 5 m/s
-    EXPECT_DOUBLE_EQ(observed[1].value, superelevation_velocity(scene->spec.superelevations[0]));
+    EXPECT_DOUBLE_EQ(observed[1].value, superelevation_velocity(scene.spec.superelevations[0]));
     EXPECT_DOUBLE_EQ(observed[2].uncertainty, 1);
     EXPECT_EQ(observed[5].kind, ObservedValue::Kind::below);
     for (const ObservedValue& o : observed) {
@@ -167,7 +166,7 @@ TEST_F(ObservedScene, has_a_value_and_a_prediction_for_every_observation) {
     EXPECT_EQ(observed[7].key, "deposit_outline[0].overlap");
     EXPECT_EQ(observed[8].key, "affected_area[0].overlap");
     EXPECT_EQ(observed[9].key, "elevation_change[0].agreement");
-    EXPECT_EQ(predicted_values(*scene, observe::Observation()).size(), observed.size());
+    EXPECT_EQ(predicted_values(scene, observe::Observation()).size(), observed.size());
 }
 
 TEST_F(ObservedScene, observations_that_cannot_be_are_refused) {

@@ -1,7 +1,6 @@
 #include <algorithm>
 #include <cstdlib>
 #include <fstream>
-#include <stdexcept>
 #include <string>
 #include <tuple>
 #include <vector>
@@ -15,6 +14,7 @@
 #include "run/run_scene.hpp"
 #include "scene/scene.hpp"
 #include "simd/dispatch.hpp"
+#include "support/value_of.hpp"
 
 /// Small runs whose results are known to the bit. golden_hashes.json is the table: what is run, and the hashes.
 namespace talus::run {
@@ -76,11 +76,8 @@ class Golden : public testing::TestWithParam<std::tuple<std::string, const char*
     static RunResult result_on(const Json& row, int threads) {
         auto set = row.at("set").get<std::vector<std::string>>();
         set.push_back(fmt::format("solver.thread_count={}", threads));
-        const auto scene = scene::load_scene(in_source(row.at("scene").get<std::string>()), set);
-        if (!scene) throw std::runtime_error(scene.error().message);
-        auto result = run_scene(*scene, {});
-        if (!result) throw std::runtime_error(result.error().message);
-        return *std::move(result);
+        const std::string file = in_source(row.at("scene").get<std::string>());
+        return test::value_of(run_scene(test::value_of(scene::load_scene(file, set)), {}));
     }
 };
 
@@ -113,11 +110,8 @@ INSTANTIATE_TEST_SUITE_P(Table, Golden,
 /// A table of runs in which nothing happens would hold whatever is broken.
 TEST(GoldenScenes, contain_what_they_are_named_after) {
     const auto observed = [](const char* name) {
-        const auto scene = scene::load_scene(in_source(std::string("tests/golden/scenes/") + name + ".toml"));
-        if (!scene) throw std::runtime_error(scene.error().message);
-        auto result = run_scene(*scene, {});
-        if (!result) throw std::runtime_error(result.error().message);
-        return std::move(result->observation);
+        const std::string file = in_source(std::string("tests/golden/scenes/") + name + ".toml");
+        return test::value_of(run_scene(test::value_of(scene::load_scene(file)), {})).observation;
     };
     const observe::Observation hit = observed("barrier_and_houses");
     EXPECT_EQ(observe::hits_among(hit.buildings, true).hit, 1U);

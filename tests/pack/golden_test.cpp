@@ -2,7 +2,6 @@
 #include <filesystem>
 #include <fstream>
 #include <span>
-#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -14,6 +13,7 @@
 #include "pack/pack.hpp"
 #include "run/run_scene.hpp"
 #include "scene/scene.hpp"
+#include "support/value_of.hpp"
 
 namespace talus::pack {
 namespace {
@@ -27,9 +27,9 @@ json table() {
 
 std::string packed_scene(const json& row) {
     const auto set = row.at("set").get<std::vector<std::string>>();
-    const auto scene = scene::load_scene(TALUS_SOURCE_DIR "/" + row.at("scene").get<std::string>(), set);
-    if (!scene) throw std::runtime_error(scene.error().message);
-    return write({.scene = *scene, .overrides = set});
+    const scene::Scene scene =
+        test::value_of(scene::load_scene(TALUS_SOURCE_DIR "/" + row.at("scene").get<std::string>(), set));
+    return write({.scene = scene, .overrides = set});
 }
 
 class GoldenScene : public testing::TestWithParam<std::string> {};

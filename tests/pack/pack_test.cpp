@@ -5,7 +5,6 @@
 #include <cstring>
 #include <limits>
 #include <span>
-#include <stdexcept>
 #include <string>
 
 #include <gmock/gmock.h>
@@ -15,6 +14,7 @@
 #include "pack/inflate.hpp"
 #include "pack/write.hpp"
 #include "scene/scene.hpp"
+#include "support/value_of.hpp"
 
 namespace talus::pack {
 namespace {
@@ -25,11 +25,8 @@ using testing::StartsWith;
 
 /// A scene with releases, a building, a barrier and more, on a small plane.
 const scene::Scene& small_scene() {
-    static const scene::Scene scene = [] {
-        auto loaded = scene::load_scene(TALUS_SOURCE_DIR "/tests/golden/scenes/barrier_and_houses.toml");
-        if (!loaded) throw std::runtime_error(loaded.error().message);
-        return *std::move(loaded);
-    }();
+    static const scene::Scene scene =
+        test::value_of(scene::load_scene(TALUS_SOURCE_DIR "/tests/golden/scenes/barrier_and_houses.toml"));
     return scene;
 }
 

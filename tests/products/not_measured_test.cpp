@@ -75,14 +75,12 @@ class NotMeasured : public scene::SceneFolder {
             fmt::format("[buildings]\nfile = \"houses.geojson\"\n[[barrier]]\nname = \"dam\"\nline_m = [[{0}, "
                         "{1}], [{0}, {2}]]\nheight_m = 2\n",
                         west + 85, south + 70, south + 130));
-        const auto scene = scene::load_scene(folder / "scene.toml", {"solver.model=" + model, "solver.end_time_s=9",
-                                                                     "solver.target_particle_count=400"});
-        if (!scene) throw std::runtime_error(scene.error().message);
-        const auto result = run::run_scene(*scene, {});
-        if (!result) throw std::runtime_error(result.error().message);
+        const scene::Scene scene =
+            loaded({"solver.model=" + model, "solver.end_time_s=9", "solver.target_particle_count=400"});
+        const run::RunResult result = test::value_of(run::run_scene(scene, {}));
         const std::filesystem::path to = folder / model;
         std::filesystem::create_directories(to);
-        const Status status = tables ? write_tables(*scene, *result, to, "") : write_products(*scene, *result, to);
+        const Status status = tables ? write_tables(scene, result, to, "") : write_products(scene, result, to);
         if (!status.ok()) throw std::runtime_error(status.error().message);
         return to;
     }

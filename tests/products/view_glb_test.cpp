@@ -5,6 +5,7 @@
 
 #include "geo/gltf_file.hpp"
 #include "products/view_fixture.hpp"
+#include "support/value_of.hpp"
 
 namespace talus::products {
 namespace {
@@ -42,9 +43,7 @@ class GlbOfARun : public ViewOfARun {
     geo::GltfFile open() {
         const Status status = write({"gltf"});
         EXPECT_TRUE(status.ok()) << status.error().message;
-        auto opened = geo::GltfFile::open(file("run.glb"));
-        if (!opened) throw std::runtime_error(opened.error().message);
-        return *std::move(opened);
+        return test::value_of(geo::GltfFile::open(file("run.glb")));
     }
     static geo::GltfAccessor attribute(const geo::GltfFile& file, std::size_t mesh, const char* name) {
         return *file.accessor(file.root()["meshes"][mesh]["primitives"][0]["attributes"][name]);

@@ -14,12 +14,8 @@ class InitiationTest : public scene::SceneFolder {
         write("water.csv", fmt::format("time_s,pore_pressure_ratio\n0,0.05\n4,{}\n", ratio));
         write_valley("pore_pressure_hydrograph = \"water.csv\"\n[material]\nfriction_coefficient = " + friction +
                      "\n[solver]\nend_time_s = 6\ntarget_particle_count = 400\n");
-        const auto loaded = scene::load_scene(folder / "scene.toml");
-        EXPECT_TRUE(loaded) << (loaded ? "" : loaded.error().message);
-        scene_ = *loaded;
-        auto result = run::run_scene(scene_, {});
-        EXPECT_TRUE(result) << (result ? "" : result.error().message);
-        return *std::move(result);
+        scene_ = loaded();
+        return test::value_of(run::run_scene(scene_, {}));
     }
     scene::Scene scene_;
 };

@@ -61,9 +61,7 @@ class StudyTest : public scene::SceneFolder {
         return wanted;
     }
     [[nodiscard]] Study planned(const std::vector<std::string>& options = {""}) const {
-        auto study = plan_study(request(options));
-        EXPECT_TRUE(study) << (study ? "" : study.error().message);
-        return *std::move(study);
+        return test::value_of(plan_study(request(options)));
     }
     [[nodiscard]] std::string error_of(const std::string& exposure, const std::string& more = "") const {
         write_scene(exposure, more);
@@ -131,10 +129,9 @@ TEST_F(StudyTest, is_the_same_however_the_runs_are_split) {
         std::filesystem::remove_all(folder / "out");
         const Study study = planned({"", "build it"});
         run(study, shards);
-        auto result = summarise(study);
-        EXPECT_TRUE(result) << (result ? "" : result.error().message);
-        const auto json = risk_results(*result);
-        return std::pair(json["options"].dump(), result->outcomes[0].individual.values);
+        const auto result = test::value_of(summarise(study));
+        const auto json = risk_results(result);
+        return std::pair(json["options"].dump(), result.outcomes[0].individual.values);
     };
     const auto one = of(1), three = of(3);
     EXPECT_EQ(one.first, three.first);

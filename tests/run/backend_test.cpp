@@ -2,7 +2,6 @@
 #include <cmath>
 #include <cstdint>
 #include <initializer_list>
-#include <stdexcept>
 #include <string>
 #include <utility>
 #include <vector>
@@ -28,9 +27,7 @@ class WholeRun : public scene::SceneFolder {
   protected:
     [[nodiscard]] scene::Scene on(const std::string& backend) const {
         write_valley("[solver]\ntarget_particle_count = 1500\nend_time_s = 8\n");
-        auto scene = scene::load_scene(folder / "scene.toml", {"solver.backend=" + backend});
-        if (!scene) throw std::runtime_error(scene.error().message);
-        return *std::move(scene);
+        return loaded({"solver.backend=" + backend});
     }
 };
 
@@ -161,9 +158,8 @@ TEST_F(WholeRun, on_a_device_observers_measure_what_they_measure_on_copies) {
         write("flow.csv", own_densities ? "time_s,discharge_m3ps,velocity_mps,density_kgpm3\n0,40,4,1800\n4,40,4,2300\n"
                                         : "time_s,discharge_m3ps,velocity_mps\n0,40,4\n4,40,4\n");
         write_valley(watched_scene + inflow);
-        const auto scene = scene::load_scene(folder / "scene.toml");
-        ASSERT_TRUE(scene) << scene.error().message;
-        Watched device(*scene), copies(*scene);
+        const scene::Scene scene = loaded();
+        Watched device(scene), copies(scene);
         OnCopies on_copies(copies.observer);
         const auto advance_to = [&](double time) {
             while (device.simulation.summary().time < time) {
@@ -224,10 +220,7 @@ TEST_F(WholeRun, on_a_device_observers_give_the_same_bits_on_any_number_of_threa
     write_features("later.geojson", {rectangle(45, 108, 52, 118)});
     write_valley(watched_scene);
     const auto on = [&](const char* threads) {
-        const auto scene = scene::load_scene(folder / "scene.toml", {threads, "solver.end_time_s=3"});
-        Result<RunResult> result = run_scene(*scene, {});
-        EXPECT_TRUE(result);
-        return std::move(result->observation);
+        return test::value_of(run_scene(loaded({threads, "solver.end_time_s=3"}), {})).observation;
     };
     const observe::Observation one = on("solver.thread_count=1"), four = on("solver.thread_count=4");
     expect_same_maps(one.maps, four.maps);
@@ -241,9 +234,8 @@ TEST_F(WholeRun, on_a_device_observers_give_the_same_bits_on_any_number_of_threa
 TEST_F(WholeRun, on_a_device_a_step_without_frames_copies_no_particles) {
     write_features("later.geojson", {rectangle(45, 108, 52, 118)});
     write_valley(watched_scene);
-    const auto scene = scene::load_scene(folder / "scene.toml", {"solver.target_particle_count=6000"});
-    ASSERT_TRUE(scene) << scene.error().message;
-    auto run = Run::start(*scene);
+    const scene::Scene scene = loaded({"solver.target_particle_count=6000"});
+    auto run = Run::start(scene);
     ASSERT_TRUE(run) << run.error().message;
     ASSERT_TRUE((*run)->advance());  // takes model, terrain, particles and maps over
     const sim::Simulation& simulation = (*run)->simulation();

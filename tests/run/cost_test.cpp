@@ -17,9 +17,6 @@ class CostOfRun : public scene::SceneFolder {
         write_valley(
             "[solver]\ntarget_particle_count = 400\nend_time_s = 3\nlargest_time_step_s = 0.016666666666666666\n");
     }
-    [[nodiscard]] scene::Scene loaded(const std::vector<std::string>& overrides = {}) const {
-        return *scene::load_scene(folder / "scene.toml", overrides);
-    }
     /// Debris of 1 m particles so slow that every step is the longest, on a machine that takes `step` s for one.
     static Rehearsal slow_debris(double step) {
         Rehearsal rehearsal;

@@ -1,7 +1,6 @@
 #include <cmath>
 #include <limits>
 #include <optional>
-#include <stdexcept>
 
 #include <gmock/gmock.h>
 
@@ -19,13 +18,10 @@ using testing::HasSubstr;
 
 class DepthAveragedRun : public scene::SceneFolder {
   protected:
-    [[nodiscard]] scene::Scene loaded(const std::string& more, const std::vector<std::string>& overrides = {}) const {
+    [[nodiscard]] scene::Scene loaded(const std::string& more, std::vector<std::string> overrides = {}) const {
         write_valley(more);
-        std::vector<std::string> all{"solver.model=depth_averaged", "solver.end_time_s=12"};
-        all.insert(all.end(), overrides.begin(), overrides.end());
-        auto scene = scene::load_scene(folder / "scene.toml", all);
-        if (!scene) throw std::runtime_error(scene.error().message);
-        return std::move(*scene);
+        overrides.insert(overrides.begin(), {"solver.model=depth_averaged", "solver.end_time_s=12"});
+        return SceneFolder::loaded(overrides);
     }
     [[nodiscard]] static std::string dam(const std::string& more) {
         return fmt::format("[[barrier]]\nname = \"dam\"\nline_m = [[{0}, {1}], [{0}, {2}]]\nthickness_m = 1\n{3}\n",

@@ -1,6 +1,5 @@
 #include <cmath>
 #include <optional>
-#include <stdexcept>
 
 #include <gmock/gmock.h>
 
@@ -22,11 +21,7 @@ class EnergyOfARun : public scene::SceneFolder, public testing::WithParamInterfa
         std::vector<std::string> all{"solver.end_time_s=6", "solver.target_particle_count=800"};
         if (*GetParam() != '\0') all = {"solver.end_time_s=6", GetParam()};
         all.insert(all.end(), settings.begin(), settings.end());
-        const auto scene = scene::load_scene(folder / "scene.toml", all);
-        if (!scene) throw std::runtime_error(scene.error().message);
-        auto result = run_scene(*scene, {});
-        if (!result) throw std::runtime_error(result.error().message);
-        return std::move(*result);
+        return test::value_of(run_scene(loaded(all), {}));
     }
     static void expect_within(const RunResult& result) {
         const observe::Energy& energy = result.observation.energy;

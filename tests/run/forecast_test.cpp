@@ -200,10 +200,8 @@ Ratio ratio_of(const scene::Scene& scene) {
 
 TEST_F(ClockOfARun, of_a_valley_is_right_to_a_factor_of_two) {
     write_valley("");
-    const auto scene =
-        scene::load_scene(folder / "scene.toml", {"solver.target_particle_count=400", "solver.end_time_s=200"});
-    ASSERT_TRUE(scene) << scene.error().message;
-    const Ratio ratio = ratio_of(*scene);
+    const scene::Scene scene = loaded({"solver.target_particle_count=400", "solver.end_time_s=200"});
+    const Ratio ratio = ratio_of(scene);
     EXPECT_LT(ratio.end, 100) << "the end time would have been a good estimate";
     EXPECT_GT(ratio.least, 0.5);
     EXPECT_LT(ratio.greatest, 2);
@@ -215,9 +213,8 @@ TEST_F(ClockOfARun, of_a_slope_onto_level_ground_is_right_to_a_factor_of_two) {
     write("scene.toml",
           "[terrain]\nfile = \"dem.tif\"\n[[release]]\nfile = \"release.geojson\"\nthickness_m = 2\n"
           "[material]\nfriction_coefficient = 0.3\n[solver]\ntarget_particle_count = 400\nend_time_s = 200\n");
-    const auto scene = scene::load_scene(folder / "scene.toml");
-    ASSERT_TRUE(scene) << scene.error().message;
-    const Ratio ratio = ratio_of(*scene);
+    const scene::Scene scene = loaded();
+    const Ratio ratio = ratio_of(scene);
     EXPECT_LT(ratio.end, 60);
     EXPECT_GT(ratio.least, 0.5);
     EXPECT_LT(ratio.greatest, 2);
@@ -229,9 +226,8 @@ TEST_F(ClockOfARun, of_an_inflow_is_right_to_a_factor_of_two) {
     write("scene.toml",
           "[terrain]\nfile = \"dem.tif\"\n[[inflow]]\nline_m = [[824030, 825095], [824030, 825105]]\n"
           "hydrograph = \"hydrograph.csv\"\n[solver]\ntarget_particle_count = 400\nend_time_s = 200\n");
-    const auto scene = scene::load_scene(folder / "scene.toml");
-    ASSERT_TRUE(scene) << scene.error().message;
-    const Ratio ratio = ratio_of(*scene);
+    const scene::Scene scene = loaded();
+    const Ratio ratio = ratio_of(scene);
     EXPECT_LT(ratio.end, 150);
     EXPECT_GT(ratio.least, 0.5);
     EXPECT_LT(ratio.greatest, 2);

@@ -1,5 +1,4 @@
 #include <cmath>
-#include <stdexcept>
 
 #include <gmock/gmock.h>
 
@@ -11,19 +10,14 @@ namespace {
 
 class Gauges : public scene::SceneFolder {
   protected:
-    [[nodiscard]] RunResult run(const std::vector<std::string>& overrides) const {
+    [[nodiscard]] RunResult run(std::vector<std::string> overrides) const {
         write_valley(
             fmt::format("[[gauge]]\nname = \"in the valley\"\nx_m = {}\ny_m = {}\n"
                         "[[gauge]]\nchainage_m = 40\n"
                         "[[gauge]]\nname = \"on the bank\"\nx_m = {}\ny_m = {}\n",
                         west + 57.5, south + 102.5, west + 92.5, south + 12.5));
-        std::vector<std::string> all{"solver.end_time_s=8", "solver.target_particle_count=1000"};
-        all.insert(all.end(), overrides.begin(), overrides.end());
-        const auto scene = scene::load_scene(folder / "scene.toml", all);
-        if (!scene) throw std::runtime_error(scene.error().message);
-        auto result = run_scene(*scene, {});
-        if (!result) throw std::runtime_error(result.error().message);
-        return std::move(*result);
+        overrides.insert(overrides.begin(), {"solver.end_time_s=8", "solver.target_particle_count=1000"});
+        return test::value_of(run_scene(loaded(overrides), {}));
     }
 };
 

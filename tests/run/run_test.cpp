@@ -3,8 +3,6 @@
 #include <atomic>
 #include <cmath>
 #include <limits>
-#include <stdexcept>
-#include <utility>
 
 #include <fmt/format.h>
 #include <gmock/gmock.h>
@@ -22,13 +20,10 @@ using testing::StartsWith;
 
 class RunOfAScene : public scene::SceneFolder {
   protected:
-    [[nodiscard]] scene::Scene loaded(const std::string& more, const std::vector<std::string>& overrides = {}) const {
+    [[nodiscard]] scene::Scene loaded(const std::string& more, std::vector<std::string> overrides = {}) const {
         write_valley(more);
-        std::vector<std::string> all{"solver.target_particle_count=400", "solver.end_time_s=3"};
-        all.insert(all.end(), overrides.begin(), overrides.end());
-        auto scene = scene::load_scene(folder / "scene.toml", all);
-        if (!scene) throw std::runtime_error(scene.error().message);
-        return std::move(*scene);
+        overrides.insert(overrides.begin(), {"solver.target_particle_count=400", "solver.end_time_s=3"});
+        return SceneFolder::loaded(overrides);
     }
 };
 

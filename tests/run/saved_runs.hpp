@@ -5,7 +5,6 @@
 #include <cstddef>
 #include <cstring>
 #include <optional>
-#include <stdexcept>
 #include <string>
 #include <utility>
 #include <vector>
@@ -24,8 +23,7 @@ inline std::string state_at(const scene::Scene& scene, std::optional<double> tim
     RunOptions options;
     options.save_time = time;
     options.on_state = [&](const std::string& saved, double) { state = saved; };
-    const auto result = run_scene(scene, options);
-    if (!result) throw std::runtime_error(result.error().message);
+    (void)test::value_of(run_scene(scene, options));
     return state;
 }
 
@@ -51,9 +49,7 @@ class SavedRuns : public scene::SceneFolder {
     }
     [[nodiscard]] scene::Scene loaded(std::vector<std::string> overrides = {}) const {
         overrides.insert(overrides.begin(), always_.begin(), always_.end());
-        auto scene = scene::load_scene(folder / "scene.toml", overrides);
-        if (!scene) throw std::runtime_error(scene.error().message);
-        return std::move(*scene);
+        return SceneFolder::loaded(overrides);
     }
     [[nodiscard]] std::string refusal(const std::string& state, const std::vector<std::string>& overrides) const {
         const auto result = run_from(loaded(overrides), state);

@@ -53,9 +53,7 @@ class Variants : public scene::SceneFolder {
     [[nodiscard]] scene::Scene with(const Variant& variant) const {
         std::vector<std::string> overrides = source.overrides;
         overrides.insert(overrides.end(), variant.overrides.begin(), variant.overrides.end());
-        auto scene = scene::load_scene(source.file, overrides);
-        if (!scene) throw std::runtime_error(scene.error().message);
-        return *std::move(scene);
+        return loaded(overrides);
     }
     SceneSource source;
 };

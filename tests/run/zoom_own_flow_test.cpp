@@ -30,9 +30,8 @@ OwnFlow run_whole(scene::Scene scene, const Polygon& area) {
     Grid<double> bed(ground.geometry);
     std::copy(ground.values.begin(), ground.values.end(), bed.values.begin());
     BoundaryFlow flow(depth::Solver(bed, {}), area);
-    const auto started = run::Run::start(scene);
-    if (!started) throw std::runtime_error(started.error().message);
-    run::Run& event = **started;
+    const auto started = test::value_of(run::Run::start(scene));
+    run::Run& event = *started;
     const WorldPoint origin = event.ground().terrain.frame().origin;
     const double particle = event.model().particle_volume();
     std::unordered_map<std::uint32_t, bool> was_inside;

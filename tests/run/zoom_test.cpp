@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <stdexcept>
 
 #include <gmock/gmock.h>
 
@@ -138,13 +137,10 @@ TEST(BoundaryFlow, comes_in_longer_pieces_where_particles_are_larger) {
 
 class ZoomedRun : public scene::SceneFolder {
   protected:
-    [[nodiscard]] scene::Scene loaded(const std::string& more, const std::vector<std::string>& overrides = {}) const {
+    [[nodiscard]] scene::Scene loaded(const std::string& more, std::vector<std::string> overrides = {}) const {
         write_valley(more);
-        std::vector<std::string> all{"solver.end_time_s=12"};
-        all.insert(all.end(), overrides.begin(), overrides.end());
-        auto scene = scene::load_scene(folder / "scene.toml", all);
-        if (!scene) throw std::runtime_error(scene.error().message);
-        return std::move(*scene);
+        overrides.insert(overrides.begin(), "solver.end_time_s=12");
+        return SceneFolder::loaded(overrides);
     }
     [[nodiscard]] static std::string dam(double x) {
         return fmt::format(
@@ -177,12 +173,10 @@ TEST_F(ZoomedRun, brings_what_crosses_the_boundary_to_the_structure) {
 
 TEST_F(ZoomedRun, is_fed_by_debris_with_the_friction_inside_of_the_particles) {
     const auto first_time = [&](const char* coefficient) {
-        const auto zoomed =
-            zoom_in(loaded(dam(150), {"zoom.structure=dam", "zoom.margin_m=20", "zoom.particle_spacing_m=1",
-                                      std::string("material.internal_friction_coefficient=") + coefficient}),
-                    {});
-        if (!zoomed) throw std::runtime_error(zoomed.error().message);
-        return zoomed->record.first_time();
+        const scene::Scene scene =
+            loaded(dam(150), {"zoom.structure=dam", "zoom.margin_m=20", "zoom.particle_spacing_m=1",
+                              std::string("material.internal_friction_coefficient=") + coefficient});
+        return test::value_of(zoom_in(scene, {})).record.first_time();
     };
     const double frictionless = first_time("0"), as_the_ground = first_time("none"), more = first_time("0.8");
     EXPECT_GT(as_the_ground, frictionless + 0.05);
@@ -206,16 +200,15 @@ TEST_F(ZoomedRun, removes_particles_beyond_the_surroundings) {
     const auto farthest = [&](double surroundings) {
         auto overrides = area;
         overrides.push_back(fmt::format("zoom.surroundings_m={}", surroundings));
-        const auto result = run_scene(loaded("", overrides), {});
-        if (!result) throw std::runtime_error(result.error().message);
-        const Grid<float>& depth = result->observation.maps.peak_depth;
+        const RunResult result = test::value_of(run_scene(loaded("", overrides), {}));
+        const Grid<float>& depth = result.observation.maps.peak_depth;
         double east = 0;
         for (int row = 0; row < depth.geometry.rows; ++row) {
             for (int column = 0; column < depth.geometry.columns; ++column) {
                 if (depth.at(column, row) > 0) east = std::max(east, depth.geometry.centre(column, row).x - west);
             }
         }
-        EXPECT_GT(result->observation.timeseries.back().volume_left, 0.5 * result->zoom->volumes.in);
+        EXPECT_GT(result.observation.timeseries.back().volume_left, 0.5 * result.zoom->volumes.in);
         return east;
     };
     EXPECT_LT(farthest(5), 130 + 5 + 2 * 5 + 5) << "two cells of the terrain, one of the map";

@@ -33,14 +33,13 @@ TEST_F(AlertsOfAScene, are_loaded_as_they_stand) {
         "[[trigger]]\nname = \"gauge\"\ninflow = \"gully\"\ndischarge_limit_m3ps = 30\nhold_time_s = 20\n"
         "[[alarm]]\nname = \"near\"\nstructure = \"House 38\"\ndistance_m = 50\n"
         "[[alarm]]\nname = \"load\"\nstructure = \"far away\"\nimpact_pressure_Pa = 30000\n");
-    const auto scene = load_scene(folder / "scene.toml");
-    ASSERT_TRUE(scene) << scene.error().message;
-    ASSERT_EQ(scene->spec.triggers.size(), 2U);
-    EXPECT_EQ(scene->spec.triggers[0].volume_limit, 900);
-    EXPECT_FALSE(scene->spec.triggers[0].discharge_limit);
-    EXPECT_EQ(scene->spec.triggers[1].hold_time, 20);
-    ASSERT_EQ(scene->spec.alarms.size(), 2U);
-    EXPECT_EQ(scene->spec.alarms[1].impact_pressure, 30000);
+    const Scene scene = loaded();
+    ASSERT_EQ(scene.spec.triggers.size(), 2U);
+    EXPECT_EQ(scene.spec.triggers[0].volume_limit, 900);
+    EXPECT_FALSE(scene.spec.triggers[0].discharge_limit);
+    EXPECT_EQ(scene.spec.triggers[1].hold_time, 20);
+    ASSERT_EQ(scene.spec.alarms.size(), 2U);
+    EXPECT_EQ(scene.spec.alarms[1].impact_pressure, 30000);
 }
 
 TEST_F(AlertsOfAScene, name_only_what_exists_and_fits_together) {

@@ -18,11 +18,6 @@ using testing::HasSubstr;
 
 class LoadBed : public SceneFolder {
   protected:
-    [[nodiscard]] Scene loaded() const {
-        auto scene = load_scene(folder / "scene.toml");
-        EXPECT_TRUE(scene) << scene.error().message;
-        return scene ? std::move(*scene) : Scene{};
-    }
     static double volume_of(const terrain::Bed& bed) {
         return cell * cell * std::accumulate(bed.depth.begin(), bed.depth.end(), 0.0);
     }

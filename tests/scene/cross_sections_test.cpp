@@ -26,15 +26,14 @@ TEST_F(CrossSections, are_lines_of_the_scene_or_of_a_file) {
     write_valley(
         "[[cross_section]]\nline_m = [[824050, 825050], [824060, 825100], [824050, 825150]]\ninterval_s = 0.5\n"
         "[[cross_section]]\nname = \"road\"\nfile = \"lines.geojson\"\n");
-    const auto scene = load_scene(folder / "scene.toml");
-    ASSERT_TRUE(scene) << scene.error().message;
-    ASSERT_EQ(scene->cross_sections.size(), 3U);
-    EXPECT_EQ(scene->cross_sections[0].name, "section 1");
-    EXPECT_EQ(scene->cross_sections[0].line.size(), 3U);
-    EXPECT_EQ(scene->cross_sections[0].interval, 0.5);
-    EXPECT_EQ(scene->cross_sections[1].name, "bridge");
-    EXPECT_EQ(scene->cross_sections[2].name, "road 2");
-    EXPECT_EQ(scene->cross_sections[2].line.front().x, west + 200);
+    const Scene scene = loaded();
+    ASSERT_EQ(scene.cross_sections.size(), 3U);
+    EXPECT_EQ(scene.cross_sections[0].name, "section 1");
+    EXPECT_EQ(scene.cross_sections[0].line.size(), 3U);
+    EXPECT_EQ(scene.cross_sections[0].interval, 0.5);
+    EXPECT_EQ(scene.cross_sections[1].name, "bridge");
+    EXPECT_EQ(scene.cross_sections[2].name, "road 2");
+    EXPECT_EQ(scene.cross_sections[2].line.front().x, west + 200);
 }
 
 TEST_F(CrossSections, that_cannot_be_are_refused) {

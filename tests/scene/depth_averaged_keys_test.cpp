@@ -91,25 +91,22 @@ TEST_F(DepthAveragedScene, notes_every_key_that_means_nothing_to_particles) {
     EXPECT_THAT(grid->notes, testing::Each(Not(HasSubstr("not use "))));
     EXPECT_THAT(grid->notes, testing::Each(Not(HasSubstr("no falls"))));
     write_valley("");
-    const auto without = load_scene(folder / "scene.toml");
-    ASSERT_TRUE(without);
-    EXPECT_THAT(without->notes, testing::Each(Not(HasSubstr("not use "))));
+    const Scene without = loaded();
+    EXPECT_THAT(without.notes, testing::Each(Not(HasSubstr("not use "))));
     // The depth-averaged run that feeds a zoom has a use for them.
     write_valley(keys + fmt::format("[[barrier]]\nname = \"dam\"\nline_m = [[{0}, {1}], [{0}, {2}]]\nheight_m = 5\n"
                                     "[zoom]\nstructure = \"dam\"\n",
                                     west + 150, south + 60, south + 140));
-    const auto zoom = load_scene(folder / "scene.toml");
-    ASSERT_TRUE(zoom) << zoom.error().message;
-    EXPECT_THAT(zoom->notes, testing::Each(Not(HasSubstr("not use "))));
+    const Scene zoom = loaded();
+    EXPECT_THAT(zoom.notes, testing::Each(Not(HasSubstr("not use "))));
 }
 
 TEST_F(DepthAveragedScene, takes_pore_pressure_that_evolves) {
     write_valley(
         "[material]\npore_pressure = \"dilatancy\"\npermeability_m2 = 1e-10\nsolid_fraction = 0.58\n"
         "critical_solid_fraction = 0.62\n");
-    const auto scene = load_scene(folder / "scene.toml", {"solver.model=depth_averaged"});
-    ASSERT_TRUE(scene) << scene.error().message;
-    EXPECT_THAT(scene->notes, testing::Each(Not(HasSubstr("the depth-averaged model does not use"))));
+    const Scene scene = loaded({"solver.model=depth_averaged"});
+    EXPECT_THAT(scene.notes, testing::Each(Not(HasSubstr("the depth-averaged model does not use"))));
 }
 
 TEST_F(DepthAveragedScene, refuses_what_the_model_lacks) {

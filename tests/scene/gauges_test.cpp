@@ -18,15 +18,14 @@ class GaugesOfScene : public SceneFolder {
 TEST_F(GaugesOfScene, stand_at_places_and_chainages) {
     write_valley(fmt::format("[[gauge]]\nname = \"mill\"\nx_m = {}\ny_m = {}\n[[gauge]]\nchainage_m = 30\n", west + 50,
                              south + 60));
-    const auto scene = load_scene(folder / "scene.toml");
-    ASSERT_TRUE(scene) << scene.error().message;
-    ASSERT_EQ(scene->gauges.size(), 2U);
-    EXPECT_EQ(scene->gauges[0].name, "mill");
-    EXPECT_EQ(scene->gauges[0].at.y, south + 60);
-    EXPECT_EQ(scene->gauges[1].name, "gauge 2");
-    const PlanPoint on_path = scene->flow_path.point_at(30);
-    EXPECT_EQ(scene->gauges[1].at.x, on_path.x);
-    EXPECT_FALSE(follows_debris(*scene)) << "the chainage is along the traced path";
+    const Scene scene = loaded();
+    ASSERT_EQ(scene.gauges.size(), 2U);
+    EXPECT_EQ(scene.gauges[0].name, "mill");
+    EXPECT_EQ(scene.gauges[0].at.y, south + 60);
+    EXPECT_EQ(scene.gauges[1].name, "gauge 2");
+    const PlanPoint on_path = scene.flow_path.point_at(30);
+    EXPECT_EQ(scene.gauges[1].at.x, on_path.x);
+    EXPECT_FALSE(follows_debris(scene)) << "the chainage is along the traced path";
 }
 
 TEST_F(GaugesOfScene, are_refused_where_they_cannot_stand) {

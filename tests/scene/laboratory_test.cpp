@@ -42,9 +42,7 @@ class Flume : public SceneFolder {
               "[terrain]\nfile = \"flume.asc\"\ncrs = \"local\"\n[[release]]\nfile = \"release.geojson\"\n"
               "thickness_m = 0.08\n[outputs]\n" +
                   outputs);
-        auto scene = load_scene(folder / "scene.toml");
-        EXPECT_TRUE(scene) << scene.error().message;
-        return scene ? std::move(*scene) : Scene();
+        return SceneFolder::loaded();
     }
 
   private:
@@ -110,10 +108,9 @@ TEST_F(Flume, is_a_new_scene) {
 
 TEST_F(Flume, its_field_sized_neighbour_is_as_before) {
     write_valley("");
-    const auto scene = load_scene(folder / "scene.toml");
-    ASSERT_TRUE(scene) << scene.error().message;
-    EXPECT_EQ(scene->spec.outputs.chainage_interval, 1);
-    EXPECT_EQ(scene->spec.outputs.arrival_depth, 0.1);
+    const Scene scene = SceneFolder::loaded();
+    EXPECT_EQ(scene.spec.outputs.chainage_interval, 1);
+    EXPECT_EQ(scene.spec.outputs.arrival_depth, 0.1);
 }
 
 }  // namespace

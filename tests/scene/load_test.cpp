@@ -1,6 +1,5 @@
 #include <cmath>
 #include <limits>
-#include <stdexcept>
 #include <string>
 
 #include <gmock/gmock.h>
@@ -22,11 +21,6 @@ using testing::StartsWith;
 
 class LoadScene : public SceneFolder {
   protected:
-    [[nodiscard]] Scene loaded(const std::vector<std::string>& overrides = {}) const {
-        auto scene = load_scene(folder / "scene.toml", overrides);
-        if (!scene) throw std::runtime_error(scene.error().message);
-        return std::move(*scene);
-    }
     [[nodiscard]] std::string line(int number) const {
         return path("scene.toml") + ":" + std::to_string(number) + ": ";
     }

@@ -3,7 +3,6 @@
 #include <cmath>
 #include <iterator>
 #include <numbers>
-#include <stdexcept>
 
 #include <gdal_priv.h>
 #include <gmock/gmock.h>
@@ -32,22 +31,14 @@ class NewSceneTest : public SceneFolder {
         options.release = path("release.geojson");
         options.folder = folder / "new" / "valley";
     }
-    [[nodiscard]] NewScene made() const {
-        auto scene = write_new_scene(options);
-        if (!scene) throw std::runtime_error(scene.error().message);
-        return *scene;
-    }
+    [[nodiscard]] NewScene made() const { return test::value_of(write_new_scene(options)); }
     [[nodiscard]] std::string refusal() const {
         const auto scene = write_new_scene(options);
         EXPECT_FALSE(scene);
         EXPECT_FALSE(std::filesystem::exists(options.folder)) << "nothing may be left behind";
         return scene ? "" : scene.error().message;
     }
-    static Scene loaded(const std::filesystem::path& file) {
-        auto scene = load_scene(file);
-        if (!scene) throw std::runtime_error(scene.error().message);
-        return std::move(*scene);
-    }
+    static Scene loaded(const std::filesystem::path& file) { return test::value_of(load_scene(file)); }
     [[nodiscard]] static std::string text_of(const std::filesystem::path& file) {
         std::ifstream in(file);
         return {std::istreambuf_iterator<char>(in), {}};
@@ -311,16 +302,15 @@ class DescribeScene : public SceneFolder {};
 TEST_F(DescribeScene, tells_what_a_run_would_take) {
     write_valley("[buildings]\nfile = \"houses.geojson\"\n", "volume_m3 = 512");
     write_features("houses.geojson", {rectangle(200, 90, 210, 100)});
-    const auto scene = load_scene(folder / "scene.toml", {"solver.particle_spacing_m=0.8"});
-    ASSERT_TRUE(scene) << scene.error().message;
-    const std::string text = describe_scene(*scene);
+    const Scene scene = loaded({"solver.particle_spacing_m=0.8"});
+    const std::string text = describe_scene(scene);
     EXPECT_THAT(text, HasSubstr("60 x 40 cells of 5 m, EPSG:2326 (Hong Kong 1980 Grid System)"));
     EXPECT_THAT(text, HasSubstr("\"scarp\": 512 m3, 400 m2 in plan, mean thickness 1.1"));
     EXPECT_THAT(text, HasSubstr("about 1000 with a spacing of 0.8 m (solver.particle_spacing_m)"));
     EXPECT_THAT(text, HasSubstr("map cell    "));
     EXPECT_THAT(text, HasSubstr("buildings   1, 1 with an assumed height"));
     EXPECT_THAT(text, HasSubstr("traced downhill from the release"));
-    for (const std::string& note : scene->notes) EXPECT_THAT(text, HasSubstr("  - " + note + "\n"));
+    for (const std::string& note : scene.notes) EXPECT_THAT(text, HasSubstr("  - " + note + "\n"));
 }
 
 }  // namespace

@@ -40,9 +40,7 @@ class OptionsOfAScene : public SceneFolder {
             name, measures);
     }
     [[nodiscard]] Scene with(const std::string& option) const {
-        auto scene = load_scene(folder / "scene.toml", {"risk.currency=HKD", "scene.option=" + option});
-        EXPECT_TRUE(scene) << (scene ? "" : scene.error().message);
-        return *std::move(scene);
+        return loaded({"risk.currency=HKD", "scene.option=" + option});
     }
     static std::vector<std::string> structures(const Scene& scene) {
         std::vector<std::string> names;
@@ -78,9 +76,8 @@ TEST_F(OptionsOfAScene, put_in_force_what_they_name) {
 
 TEST_F(OptionsOfAScene, leave_a_scene_without_them_as_it_is) {
     write_valley();
-    const auto scene = load_scene(folder / "scene.toml");
-    ASSERT_TRUE(scene) << scene.error().message;
-    for (const std::string& note : scene->notes) EXPECT_EQ(note.find("option"), std::string::npos) << note;
+    const Scene scene = loaded();
+    for (const std::string& note : scene.notes) EXPECT_EQ(note.find("option"), std::string::npos) << note;
 }
 
 TEST_F(OptionsOfAScene, refuse_what_does_not_exist_in_one_sentence) {

@@ -34,9 +34,7 @@ class ParseScene : public SceneFolder {
     }
     params::SceneSpec parsed(const std::string& text, const std::vector<std::string>& overrides = {}) const {
         write("scene.toml", text);
-        auto spec = parse_scene(file(), overrides);
-        EXPECT_TRUE(spec) << spec.error().message;
-        return spec ? *spec : params::SceneSpec{};
+        return test::value_of(parse_scene(file(), overrides));
     }
     [[nodiscard]] std::string file() const { return path("scene.toml"); }
     [[nodiscard]] std::string line(int number) const { return file() + ":" + std::to_string(number) + ": "; }

@@ -18,11 +18,6 @@ using testing::StartsWith;
 
 class ParticleSpacing : public SceneFolder {
   protected:
-    [[nodiscard]] Scene loaded(const std::vector<std::string>& overrides = {}) const {
-        auto scene = load_scene(path("scene.toml"), overrides);
-        if (!scene) throw std::runtime_error(scene.error().message);
-        return *std::move(scene);
-    }
     [[nodiscard]] double spacing(const std::vector<std::string>& overrides = {}) const {
         return particle_spacing(loaded(overrides));
     }

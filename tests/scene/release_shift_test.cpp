@@ -1,5 +1,4 @@
 #include <cmath>
-#include <stdexcept>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -22,11 +21,6 @@ class ReleaseShift : public SceneFolder {
         write_valley();
         write_terrain("dem.tif", [](double x, double y) { return 300 - 0.4 * (x - west) - 0.3 * (y - south); });
         write_features("release.geojson", {rectangle(100, 90, 120, 110)});
-    }
-    [[nodiscard]] Scene loaded(const std::vector<std::string>& overrides = {}) const {
-        auto scene = load_scene(folder / "scene.toml", overrides);
-        if (!scene) throw std::runtime_error(scene.error().message);
-        return std::move(*scene);
     }
     [[nodiscard]] static PlanPoint corner(const Scene& scene) { return scene.releases[0].patches[0].polygon.outer[0]; }
     [[nodiscard]] PlanPoint moved(const std::vector<std::string>& overrides) const {

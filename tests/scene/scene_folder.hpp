@@ -11,6 +11,7 @@
 
 #include "geo/raster.hpp"
 #include "scene/scene.hpp"
+#include "support/value_of.hpp"
 
 namespace talus::scene {
 
@@ -77,6 +78,10 @@ class SceneFolder : public testing::Test {
                   "\n" + more);
     }
 
+    /// The scene in scene.toml.
+    [[nodiscard]] Scene loaded(const std::vector<std::string>& overrides = {}) const {
+        return test::value_of(load_scene(folder / "scene.toml", overrides));
+    }
     [[nodiscard]] std::string load_error(const std::vector<std::string>& overrides = {}) const {
         const auto scene = load_scene(folder / "scene.toml", overrides);
         return scene ? "(it loaded)" : scene.error().message;

@@ -1,5 +1,4 @@
 #include <cmath>
-#include <stdexcept>
 #include <utility>
 
 #include <gmock/gmock.h>
@@ -28,18 +27,10 @@ class Structures : public SceneFolder {
         return fmt::format("[[inflow]]\nname = \"gully\"\nline_m = [[{0}, {1}], [{0}, {2}]]\nhydrograph = \"{3}\"\n",
                            west + 45, south + 95, south + 105, hydrograph);
     }
-    [[nodiscard]] Scene loaded(const std::vector<std::string>& overrides = {}) const {
-        auto scene = load_scene(folder / "scene.toml", overrides);
-        if (!scene) throw std::runtime_error(scene.error().message);
-        return std::move(*scene);
-    }
-    [[nodiscard]] run::RunResult run(const std::vector<std::string>& overrides = {}) const {
-        std::vector<std::string> all{"solver.target_particle_count=1500", "solver.end_time_s=12",
-                                     "material.friction_coefficient=0.25"};
-        all.insert(all.end(), overrides.begin(), overrides.end());
-        auto result = run::run_scene(loaded(all), {});
-        if (!result) throw std::runtime_error(result.error().message);
-        return std::move(*result);
+    [[nodiscard]] run::RunResult run(std::vector<std::string> overrides = {}) const {
+        overrides.insert(overrides.begin(), {"solver.target_particle_count=1500", "solver.end_time_s=12",
+                                             "material.friction_coefficient=0.25"});
+        return test::value_of(run::run_scene(loaded(overrides), {}));
     }
 };
 

@@ -16,9 +16,7 @@ class Zones : public SceneFolder {
   protected:
     Scene loaded(const std::string& zones) {
         write_valley(zones);
-        auto scene = load_scene(folder / "scene.toml");
-        EXPECT_TRUE(scene) << scene.error().message;
-        return scene ? std::move(*scene) : Scene{};
+        return SceneFolder::loaded();
     }
     /// What holds at a place relative to the terrain's south-west corner.
     static auto at(const Scene& scene, double x, double y) {

@@ -20,11 +20,6 @@ class ZoomOfScene : public SceneFolder {
         write_zoom(keys, more);
         return load_error();
     }
-    [[nodiscard]] Scene loaded(const std::vector<std::string>& overrides = {}) const {
-        auto scene = load_scene(folder / "scene.toml", overrides);
-        if (!scene) throw std::runtime_error(scene.error().message);
-        return std::move(*scene);
-    }
 };
 
 TEST_F(ZoomOfScene, is_the_rectangle_around_a_structure) {

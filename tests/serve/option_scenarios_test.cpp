@@ -55,13 +55,12 @@ class OptionScenarios : public scene::SceneFolder {
 };
 
 TEST_F(OptionScenarios, are_offered_beside_the_ground_as_it_is) {
-    auto scene = scene::load_scene(folder / "scene.toml");
-    ASSERT_TRUE(scene) << scene.error().message;
-    const std::vector<OptionScenario> options = option_scenarios(*scene, {folder / "scene.toml", {}});
+    scene::Scene scene = loaded();
+    const std::vector<OptionScenario> options = option_scenarios(scene, {folder / "scene.toml", {}});
     ASSERT_EQ(options.size(), 2U);
     EXPECT_EQ(options[0].name, "build");
 
-    auto first = twin::Scenario::open(std::make_shared<const scene::Scene>(*std::move(scene)));
+    auto first = twin::Scenario::open(std::make_shared<const scene::Scene>(std::move(scene)));
     ASSERT_TRUE(first) << first.error().message;
     Nobody nobody;
     std::vector<std::pair<session::Work, std::function<void()>>> prepared;
@@ -91,9 +90,8 @@ TEST_F(OptionScenarios, are_offered_beside_the_ground_as_it_is) {
 }
 
 TEST_F(OptionScenarios, are_none_where_one_is_in_force) {
-    const auto scene = scene::load_scene(folder / "scene.toml", {"scene.option=build"});
-    ASSERT_TRUE(scene) << scene.error().message;
-    EXPECT_TRUE(option_scenarios(*scene, {folder / "scene.toml", {}}).empty());
+    const scene::Scene scene = loaded({"scene.option=build"});
+    EXPECT_TRUE(option_scenarios(scene, {folder / "scene.toml", {}}).empty());
 }
 
 }  // namespace

@@ -10,6 +10,7 @@
 #include "scene/scene.hpp"
 #include "serve/alerts_fixture.hpp"
 #include "support/foreign.hpp"
+#include "support/value_of.hpp"
 
 namespace talus::test {
 namespace {
@@ -47,12 +48,9 @@ class TablesTest : public Serve {
         EXPECT_EQ(answer.status, 200) << answer.body;
         const auto archive = scene_.folder() / (name + ".zip");
         std::ofstream(archive, std::ios::binary) << answer.body;
-        const auto unpacked = scene::unpack_bundle(archive, scene_.folder() / name, {}, foreign_reader());
-        EXPECT_TRUE(unpacked) << unpacked.error().message;
-        scene_text_ = read_text(unpacked->scene);
-        auto again = scene::load_scene(unpacked->scene);
-        EXPECT_TRUE(again) << again.error().message;
-        return *std::move(again);
+        const auto unpacked = value_of(scene::unpack_bundle(archive, scene_.folder() / name, {}, foreign_reader()));
+        scene_text_ = read_text(unpacked.scene);
+        return value_of(scene::load_scene(unpacked.scene));
     }
     std::string scene_text_;  ///< of the archive that was read last
 };

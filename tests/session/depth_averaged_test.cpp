@@ -1,7 +1,6 @@
 #include "session/depth_averaged.hpp"
 
 #include <algorithm>
-#include <memory>
 #include <string>
 #include <utility>
 
@@ -9,8 +8,7 @@
 
 #include "core/hash.hpp"
 #include "run/run_scene.hpp"
-#include "session/page_api.hpp"
-#include "twin/twin_fixtures.hpp"
+#include "session/page_fixture.hpp"
 
 namespace talus::session {
 namespace {
@@ -19,20 +17,8 @@ using nlohmann::json;
 using std::chrono::milliseconds;
 using ::testing::HasSubstr;
 
-/// A session in a page, which has one thread for the live run and the other model.
-class DepthAveragedInAPage : public ::testing::Test {
+class DepthAveragedInAPage : public PageOfASession {
   protected:
-    void SetUp() override {
-        auto opened = Session::open({scene_, {}, "test"});
-        ASSERT_TRUE(opened) << opened.error().message;
-        session_ = std::move(*opened);
-        ann_ = session_->join(Role::controller, "Ann", time_);
-        api_ = std::make_unique<PageApi>(*session_, *scene_, std::nullopt);
-    }
-
-    PageAnswer ask(const std::string& method, const std::string& target, const std::string& body = "") {
-        return api_->answer(method, target, body, ann_, now_);
-    }
     json turn(bool on) { return json::parse(*ask("POST", "/api/depth_averaged", json{{"on", on}}.dump()).body); }
     void act(const json& action) {
         const PageAnswer done = ask("POST", "/api/scenarios/A/actions", action.dump());
@@ -55,13 +41,6 @@ class DepthAveragedInAPage : public ::testing::Test {
         EXPECT_TRUE(result) << result.error().message;
         return to_hex(result->hash);
     }
-
-    std::shared_ptr<const scene::Scene> scene_ = std::make_shared<const scene::Scene>(twin::test::channel_scene());
-    Clock::time_point time_{std::chrono::seconds(1000)};
-    Now now_ = [this] { return time_ += milliseconds(1); };
-    std::unique_ptr<Session> session_;
-    std::unique_ptr<PageApi> api_;
-    std::string ann_;
 };
 
 TEST_F(DepthAveragedInAPage, is_off_at_first_and_computes_the_present_setup_once_it_is_on) {

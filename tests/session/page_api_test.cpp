@@ -1,6 +1,5 @@
 #include "session/page_api.hpp"
 
-#include <memory>
 #include <optional>
 #include <string>
 #include <utility>
@@ -8,7 +7,7 @@
 
 #include <gmock/gmock.h>
 
-#include "twin/twin_fixtures.hpp"
+#include "session/page_fixture.hpp"
 
 namespace talus::session {
 namespace {
@@ -18,19 +17,8 @@ using std::chrono::milliseconds;
 using ::testing::HasSubstr;
 
 /// The requests of a page to a session in its own worker.
-class PageApiTest : public ::testing::Test {
+class PageApiTest : public PageOfASession {
   protected:
-    void SetUp() override {
-        auto opened = Session::open({scene_, {}, "test"});
-        ASSERT_TRUE(opened) << opened.error().message;
-        session_ = std::move(*opened);
-        ann_ = session_->join(Role::controller, "Ann", time_);
-        api_ = std::make_unique<PageApi>(*session_, *scene_, std::nullopt);
-    }
-
-    PageAnswer ask(const std::string& method, const std::string& target, const std::string& body = "") {
-        return api_->answer(method, target, body, ann_, now_);
-    }
     json content(const std::string& method, const std::string& target, const std::string& body = "", int status = 200) {
         const PageAnswer answer = ask(method, target, body);
         EXPECT_EQ(answer.status, status) << method << " " << target << ": " << *answer.body;
@@ -40,13 +28,6 @@ class PageApiTest : public ::testing::Test {
     std::string refusal(const std::string& method, const std::string& target, const std::string& body, int status) {
         return content(method, target, body, status).at("error");
     }
-
-    std::shared_ptr<const scene::Scene> scene_ = std::make_shared<const scene::Scene>(twin::test::channel_scene());
-    Clock::time_point time_{std::chrono::seconds(1000)};
-    Now now_ = [this] { return time_ += milliseconds(1); };
-    std::unique_ptr<Session> session_;
-    std::unique_ptr<PageApi> api_;
-    std::string ann_;
 };
 
 TEST_F(PageApiTest, answers_what_a_page_asks_when_it_opens) {
@@ -139,12 +120,12 @@ TEST_F(PageApiTest, scenarios_are_copied_and_ended) {
 TEST_F(PageApiTest, only_who_has_control_changes_anything) {
     const std::string bo = session_->join(Role::controller, "Bo", time_);
     const std::string run = R"({"action": "run"})";
-    const PageAnswer refused = api_->answer("POST", "/api/scenarios/A/actions", run, bo, now_);
+    const PageAnswer refused = api_.answer("POST", "/api/scenarios/A/actions", run, bo, now_);
     EXPECT_EQ(refused.status, 409);
     EXPECT_THAT(*refused.body, HasSubstr("Ann has control"));
     content("POST", "/api/control", R"({"do": "release"})");
-    EXPECT_EQ(api_->answer("POST", "/api/control", R"({"do": "request"})", bo, now_).status, 200);
-    EXPECT_EQ(api_->answer("POST", "/api/scenarios/A/actions", run, bo, now_).status, 200);
+    EXPECT_EQ(api_.answer("POST", "/api/control", R"({"do": "request"})", bo, now_).status, 200);
+    EXPECT_EQ(api_.answer("POST", "/api/scenarios/A/actions", run, bo, now_).status, 200);
     EXPECT_THAT(refusal("POST", "/api/control", R"({"do": "take"})", 400), HasSubstr("do = \"take\""));
 }
 

@@ -6,6 +6,7 @@
 
 #include <gmock/gmock.h>
 
+#include "support/value_of.hpp"
 #include "twin/journal.hpp"
 #include "twin/twin_fixtures.hpp"
 
@@ -23,12 +24,6 @@ json content(const Reply& reply) {
 /// A session that nothing but the test drives, by a clock of its own: no server, no thread, no waiting.
 class SessionTest : public ::testing::Test {
   protected:
-    void SetUp() override {
-        auto opened = Session::open({scene_, {}, "test"});
-        ASSERT_TRUE(opened) << opened.error().message;
-        session_ = std::move(*opened);
-    }
-
     std::string join(const char* name, Role role = Role::controller) {
         const std::string id = session_->join(role, name, time_);
         EXPECT_TRUE(session_->receive(
@@ -68,7 +63,7 @@ class SessionTest : public ::testing::Test {
 
     std::shared_ptr<const scene::Scene> scene_ = std::make_shared<const scene::Scene>(twin::test::channel_scene());
     Clock::time_point time_{std::chrono::seconds(1000)};
-    std::unique_ptr<Session> session_;
+    std::unique_ptr<Session> session_ = talus::test::value_of(Session::open({scene_, {}, "test"}));
 };
 
 const json barrier = {

@@ -5,15 +5,15 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "support/value_of.hpp"
+
 namespace talus::stats {
 namespace {
 
 using testing::HasSubstr;
 
 Distribution parsed(const std::string& text) {
-    const auto d = parse_distribution(text);
-    EXPECT_TRUE(d) << (d ? "" : d.error().message);
-    return d ? *d : Distribution{};
+    return test::value_of(parse_distribution(text));
 }
 
 TEST(Distribution, quantiles_are_those_of_its_kind) {

@@ -14,20 +14,15 @@ namespace {
 using ::testing::HasSubstr;
 
 DepthAveragedRun run_of(const Scenario& scenario, const DepthAveragedLimits& limits = {}) {
-    const auto scene = scenario.for_depth_averaged()();
-    EXPECT_TRUE(scene) << scene.error().message;
+    const scene::Scene scene = talus::test::value_of(scenario.for_depth_averaged()());
     const std::atomic<bool> stop = false;
-    auto run = run_depth_averaged(*scene, stop, {}, limits);
-    EXPECT_TRUE(run) << run.error().message;
-    return std::move(*run);
+    return talus::test::value_of(run_depth_averaged(scene, stop, {}, limits));
 }
 
 /// What `talus run --model depth_averaged` makes of it.
 run::RunResult plain_run_of(scene::Scene scene) {
     scene.spec.solver.model = params::ModelChoice::depth_averaged;
-    auto result = run::run_scene(scene, {});
-    EXPECT_TRUE(result) << result.error().message;
-    return std::move(*result);
+    return talus::test::value_of(run::run_scene(scene, {}));
 }
 
 std::string text_of(const std::vector<std::string>& sentences) {

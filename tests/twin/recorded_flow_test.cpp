@@ -10,6 +10,7 @@
 #include "products/series.hpp"
 #include "run/run_scene.hpp"
 #include "support/fixtures.hpp"
+#include "support/value_of.hpp"
 #include "twin_fixtures.hpp"
 
 namespace talus::twin::test {
@@ -18,9 +19,7 @@ namespace {
 using ::testing::HasSubstr;
 
 geo::GltfFile opened(const std::filesystem::path& file) {
-    auto glb = geo::GltfFile::open(file.string());
-    if (!glb) throw std::runtime_error(glb.error().message);
-    return *std::move(glb);
+    return talus::test::value_of(geo::GltfFile::open(file.string()));
 }
 
 /// The meshes of the debris, in the order of time.

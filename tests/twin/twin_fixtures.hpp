@@ -9,6 +9,7 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
+#include "support/value_of.hpp"
 #include "terrain/release.hpp"
 #include "twin/scenario.hpp"
 
@@ -65,9 +66,8 @@ inline void add_building(scene::Scene& scene, const std::string& name, const Pol
 }
 
 inline std::unique_ptr<Scenario> open(scene::Scene scene, ScenarioOptions options = {}) {
-    auto opened = Scenario::open(std::make_shared<const scene::Scene>(std::move(scene)), std::move(options));
-    EXPECT_TRUE(opened) << opened.error().message;
-    return std::move(*opened);
+    return talus::test::value_of(
+        Scenario::open(std::make_shared<const scene::Scene>(std::move(scene)), std::move(options)));
 }
 
 /// Until a time, or until it is not ready.

@@ -46,16 +46,8 @@ Result<Outcome> compute(const FallSpec& spec, const Setting& setting, const Watc
     material.building_friction_coefficient = 0;
     sim::Model model = sim::make_model(material, setting.solver, spec.spacing);
     sim::Ground ground(terrain, make_slice(terrain, width, spec.height), model.support_radius);
-    std::vector<LocalPoint> points;
-    for (int k = 0; k < spec.layers; ++k) {
-        for (int j = 0; j < spec.width; ++j) {
-            for (int i = 0; i < spec.length; ++i) {
-                points.push_back({static_cast<float>(-spec.cell - (i + 0.5) * spec.spacing),
-                                  static_cast<float>(-width / 2 + (j + 0.5) * spec.spacing),
-                                  static_cast<float>(spec.height + (k + 0.5) * spec.spacing)});
-            }
-        }
-    }
+    const std::vector<LocalPoint> points =
+        fill_block(-spec.cell, spec.height, spec.length, spec.width, spec.layers, spec.spacing);
     sim::State start = state_at_rest(points);
     for (std::uint32_t i = 0; i < start.count; ++i) start.velocity.x[i] = static_cast<float>(spec.speed);
     Trial trial({std::move(model), std::move(ground), std::move(start)}, watch);

@@ -32,12 +32,6 @@ struct Measured {
     Series history;
 };
 
-double momentum_along(const sim::Model& model, const sim::State& state) {
-    double sum = 0;
-    for (std::uint32_t i = 0; i < state.count; ++i) sum += state.velocity.x[i];
-    return sum * model.particle_mass();
-}
-
 /// A stream on level ground, between frictionless walls, whose head is at a net across it when it is released.
 Measured measure(const NetSpec& spec, double passing, double spacing, const Setting& setting, const Watch& watch) {
     const auto across = static_cast<int>(std::lround(spec.width * spec.depth / spacing));
@@ -62,19 +56,7 @@ Measured measure(const NetSpec& spec, double passing, double spacing, const Sett
     material.building_friction_coefficient = 0;
     sim::Model model = sim::make_model(material, setting.solver, spacing);
     sim::Ground ground(terrain, solids, model.support_radius);
-    std::vector<LocalPoint> points;
-    points.reserve(static_cast<std::size_t>(columns) * static_cast<std::size_t>(layers) *
-                   static_cast<std::size_t>(across));
-    for (int k = 0; k < layers; ++k) {
-        for (int j = 0; j < across; ++j) {
-            for (int i = 0; i < columns; ++i) {
-                points.push_back({static_cast<float>(-(i + 0.5) * spacing),
-                                  static_cast<float>(-width / 2 + (j + 0.5) * spacing),
-                                  static_cast<float>((k + 0.5) * spacing)});
-            }
-        }
-    }
-    sim::State start = state_at_rest(points);
+    sim::State start = state_at_rest(fill_block(0, 0, columns, across, layers, spacing));
     for (std::uint32_t i = 0; i < start.count; ++i) start.velocity.x[i] = static_cast<float>(speed);
     const double before = momentum_along(model, start);
     params::OutputSpec outputs;

@@ -50,17 +50,7 @@ Measured measure(const RunUpSpec& spec, bool ramp, double froude, const Setting&
     sim::Ground ground(terrain, walls, model.support_radius);
     const auto columns = static_cast<int>(std::lround(stream / spec.spacing));
     const auto layers = static_cast<int>(std::lround(spec.depth / spec.spacing));
-    std::vector<LocalPoint> points;
-    for (int k = 0; k < layers; ++k) {
-        for (int j = 0; j < spec.width; ++j) {
-            for (int i = 0; i < columns; ++i) {
-                points.push_back({static_cast<float>(-(i + 0.5) * spec.spacing),
-                                  static_cast<float>(-width / 2 + (j + 0.5) * spec.spacing),
-                                  static_cast<float>((k + 0.5) * spec.spacing)});
-            }
-        }
-    }
-    sim::State start = state_at_rest(points);
+    sim::State start = state_at_rest(fill_block(0, 0, columns, spec.width, layers, spec.spacing));
     for (std::uint32_t i = 0; i < start.count; ++i) start.velocity.x[i] = static_cast<float>(speed);
     // Jets at the obstacle are faster than a fall explains. The run-up is the required result, so the run continues.
     Trial trial({std::move(model), std::move(ground), std::move(start)}, watch, OnFault::note);

@@ -32,12 +32,6 @@ struct Measured {
     Series history;
 };
 
-double momentum_along(const sim::Model& model, const sim::State& state) {
-    double sum = 0;
-    for (std::uint32_t i = 0; i < state.count; ++i) sum += state.velocity.x[i];
-    return sum * model.particle_mass();
-}
-
 /// A stream on level ground, between frictionless walls, whose head is at a wall across it when it is released.
 Measured measure(const ImpactSpec& spec, double froude, const Setting& setting, const Watch& watch) {
     const double width = spec.width * spec.spacing, wave = std::sqrt(sim::Model{}.gravity * spec.depth);
@@ -52,21 +46,9 @@ Measured measure(const ImpactSpec& spec, double froude, const Setting& setting, 
     material.building_friction_coefficient = 0;
     sim::Model model = sim::make_model(material, setting.solver, spec.spacing);
     sim::Ground ground(terrain, walls, model.support_radius);
-    std::vector<LocalPoint> points;
     const auto columns = static_cast<int>(std::lround(stream / spec.spacing));
     const auto layers = static_cast<int>(std::lround(spec.depth / spec.spacing));
-    points.reserve(static_cast<std::size_t>(columns) * static_cast<std::size_t>(layers) *
-                   static_cast<std::size_t>(spec.width));
-    for (int k = 0; k < layers; ++k) {
-        for (int j = 0; j < spec.width; ++j) {
-            for (int i = 0; i < columns; ++i) {
-                points.push_back({static_cast<float>(-(i + 0.5) * spec.spacing),
-                                  static_cast<float>(-width / 2 + (j + 0.5) * spec.spacing),
-                                  static_cast<float>((k + 0.5) * spec.spacing)});
-            }
-        }
-    }
-    sim::State start = state_at_rest(points);
+    sim::State start = state_at_rest(fill_block(0, 0, columns, spec.width, layers, spec.spacing));
     for (std::uint32_t i = 0; i < start.count; ++i) start.velocity.x[i] = static_cast<float>(speed);
     const double before = momentum_along(model, start);
     params::OutputSpec outputs;

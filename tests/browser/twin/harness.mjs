@@ -313,4 +313,4 @@ export function unzipped(bytes) {
   }
   return members;
 }
-export { assert, existsSync };
+export { assert };

@@ -1,0 +1,54 @@
+// What the tests in a browser share: Chromium, the score of their checks, and a web server.
+import { existsSync, readFileSync, statSync } from "node:fs";
+import { createServer } from "node:http";
+import { extname, join } from "node:path";
+
+/** WebGL without a graphics card: SwiftShader has to be asked for. Smooth edges would take it twice as long. */
+export const softwareWebGL = ["--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--ignore-gpu-blocklist", "--webgl-msaa-sample-count=0"];
+
+export function skip(test, reason) {
+  console.log(`SKIPPED browser.${test}: ${reason}`);
+  process.exit(77);
+}
+/** A function that starts Chromium with further arguments; without Chromium or its driver the test is skipped. */
+export async function findChromium(test) {
+  const executablePath = process.env.TALUS_BROWSER ?? "/usr/bin/chromium";
+  if (!existsSync(executablePath)) skip(test, `no browser at ${executablePath}; install chromium or set TALUS_BROWSER`);
+  const driver = await import("playwright-core").catch(() => skip(test, "playwright-core is not installed; run `npm ci` in tests/browser"));
+  const quiet = ["--headless", "--no-sandbox", "--disable-background-networking", "--disable-component-update", "--no-first-run"];
+  return (args) => driver.chromium.launch({ executablePath, args: [...quiet, ...args] });
+}
+
+export class Score {
+  passed = 0;
+  failed = 0;
+  check = async (name, work) => {
+    try {
+      await work();
+      ++this.passed;
+      console.log(`ok      ${name}`);
+    } catch (error) {
+      ++this.failed;
+      console.log(`FAILED  ${name}\n${error.stack ?? error}`);
+    }
+  };
+}
+/** Ends the test; one without a check has failed. */
+export function end({ passed, failed }) {
+  console.log(`${passed} passed, ${failed} failed`);
+  process.exit(failed === 0 && passed > 0 ? 0 : 1);
+}
+
+/** A server at an address of this computer, `base`. */
+export async function serve(answer) {
+  const server = createServer(answer);
+  await new Promise((done) => server.listen(0, "127.0.0.1", done));
+  return { base: `http://127.0.0.1:${server.address().port}/`, close: () => server.close() };
+}
+const types = { ".html": "text/html", ".js": "text/javascript", ".css": "text/css", ".wasm": "application/wasm", ".json": "application/json" };
+/** A server of the files in a folder. */
+export const serveFolder = (folder) => serve((request, response) => {
+  const path = join(folder, decodeURIComponent(new URL(request.url, "http://localhost").pathname).replace(/\/$/, "/index.html"));
+  if (!existsSync(path) || !statSync(path).isFile()) return response.writeHead(404).end();
+  response.writeHead(200, { "Content-Type": types[extname(path)] ?? "application/octet-stream" }).end(readFileSync(path));
+});
