@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "depth/formulas.hpp"
+#include "simd/lanes.hpp"
 #include "simd/parallel.hpp"
 
 namespace talus::depth {
@@ -16,157 +17,170 @@ constexpr float stable_share = 0.15F;
 /// Converging debris is squeezed at most so much more than debris under its own weight, 1 / this.
 constexpr float least_relief = 0.2F;
 
+using L = simd::Lanes<4>;  // which every instruction set has
+
+L smaller(const L& a, const L& b) {
+    return select(b < a, b, a);
+}
+L larger(const L& a, const L& b) {
+    return select(a < b, b, a);
+}
+
+/// Calls f(column, row) in parallel for cells side by side, as many as lanes, of which some may hold debris.
+template <class F>
+void for_each_wet(const Solver& solver, const F& f) {
+    const GridGeometry& grid = solver.geometry();
+    simd::parallel_ranges(static_cast<std::size_t>(grid.rows), 8, [&](std::size_t first, std::size_t last) {
+        for (auto r = static_cast<int>(first); r < static_cast<int>(last); ++r) {
+            const float* depth = solver.row(r).depth;
+            for (int column = 0; column < grid.columns; column += L::size) {
+                if (any(L::load(depth + column) > L(dry_depth))) f(column, r);
+            }
+        }
+    });
+}
+
 /// The debris and its neighbours. A cell touches another where both hold debris and both, or neither, are built.
 class Stress {
   public:
     /// `limit`: of its norm, over the pressure, or that of the grains where r_u differs; `stiffest`: stress over strain
-    /// rate and depth, m2/s.
-    Stress(const Solver& solver, InternalFriction::Fields& fields, float limit, float stiffest)
+    /// rate and depth, m2/s; `over_mass`: time step over the length of a cell, s/m.
+    Stress(const Solver& solver, InternalFriction::Fields& fields, float limit, float stiffest, float over_mass)
         : solver_(solver),
-          fields_(fields),
-          grid_(solver.geometry()),
+          f_(fields),
           gravity_(static_cast<float>(solver.material().gravity)),
           inverse_cell_(static_cast<float>(1 / solver.geometry().cell)),
           limit_(limit),
-          stiffest_(stiffest) {}
+          stiffest_(stiffest),
+          over_mass_(over_mass) {}
 
-    /// Pressure of debris under its own weight, summed over the depth, per density, m3/s2.
-    void find_weight(int column, int row) {
-        const float h = depth(column, row);
-        const float x = solver_.slope_x_at(column, row), y = solver_.slope_y_at(column, row);
-        fields_.weight[grid_.index(column, row)] = gravity_ * h * h / (2 * (1 + x * x + y * y));
+    /// What stays during the passes: neighbours that touch, and pressures of debris under its own weight.
+    void prepare(int column, int row) {
+        const std::size_t i = f_.index(column, row);
+        const CellRow here = solver_.row(row);
+        const float* depth = here.depth + column;
+        const L h = L::load(depth), built = L::load(&f_.built[i]);
+        const auto touch = [&](const float* beside, std::size_t j) {
+            const auto both = (h > L(dry_depth)) & (L::load(beside) > L(dry_depth));
+            return select(both & (built == L::load(&f_.built[j])), L(1), L(0));
+        };
+        touch(depth + 1, i + 1).store(&f_.touch_east[i]);
+        touch(depth - 1, i - 1).store(&f_.touch_west[i]);
+        touch(solver_.row(row + 1).depth + column, i + f_.stride).store(&f_.touch_north[i]);
+        touch(solver_.row(row - 1).depth + column, i - f_.stride).store(&f_.touch_south[i]);
+        const L x = L::load(here.slope_x + column), y = L::load(here.slope_y + column);
+        (L(gravity_) * h * h / (L(2) * (L(1) + x * x + y * y))).store(&f_.weight[i]);
+        if (!solver_.carries_pore_pressure()) return;
+        for (int k = 0; k < L::size && column + k < solver_.geometry().columns; ++k) {
+            f_.ratio[i + static_cast<std::size_t>(k)] = solver_.pore_pressure_ratio_at(column + k, row);
+        }
     }
     void find_gradients(int column, int row) {
-        const Difference east = difference(column, row, 1, 0), west = difference(column - 1, row, 1, 0);
-        const Difference north = difference(column, row, 0, 1), south = difference(column, row - 1, 0, 1);
-        const std::size_t i = grid_.index(column, row);
-        fields_.u_east[i] = mean(west.u, east.u, west.cells + east.cells);
-        fields_.v_east[i] = mean(west.v, east.v, west.cells + east.cells);
-        fields_.u_north[i] = mean(south.u, north.u, south.cells + north.cells);
-        fields_.v_north[i] = mean(south.v, north.v, south.cells + north.cells);
+        const std::size_t i = f_.index(column, row);
+        const CellRow here = solver_.row(row), north = solver_.row(row + 1), south = solver_.row(row - 1);
+        const L east = L::load(&f_.touch_east[i]), west = L::load(&f_.touch_west[i]);
+        const L above = L::load(&f_.touch_north[i]), below = L::load(&f_.touch_south[i]);
+        const auto gradient = [&](const L& at, const float* before, const L& touches_before, const float* after,
+                                  const L& touches_after) {
+            const L change = touches_before * (at - L::load(before)) + touches_after * (L::load(after) - at);
+            const L cells = touches_before + touches_after;
+            return select(cells > L(0), change * L(inverse_cell_) / cells, L(0));
+        };
+        const auto find = [&](const float* at, const float* at_north, const float* at_south, float* eastward,
+                              float* northward) {
+            const L value = L::load(at);
+            gradient(value, at - 1, west, at + 1, east).store(eastward);
+            gradient(value, at_south, below, at_north, above).store(northward);
+        };
+        find(here.u + column, north.u + column, south.u + column, &f_.u_east[i], &f_.u_north[i]);
+        find(here.v + column, north.v + column, south.v + column, &f_.v_east[i], &f_.v_north[i]);
     }
     /// Across the faces to the east and to the north of a cell.
     void find_tractions(int column, int row) {
-        const std::size_t i = grid_.index(column, row);
-        const std::vector<float>&u_east = fields_.u_east, &v_east = fields_.v_east;
-        const std::vector<float>&u_north = fields_.u_north, &v_north = fields_.v_north;
-        fields_.pull_east[i] = fields_.drag_east[i] = fields_.pull_north[i] = fields_.drag_north[i] = 0;
-        if (touch(column, row, 1, 0)) {
-            const std::size_t j = i + 1;
-            const float stretch = (solver_.u_at(column + 1, row) - solver_.u_at(column, row)) * inverse_cell_;
-            const float turn = (solver_.v_at(column + 1, row) - solver_.v_at(column, row)) * inverse_cell_;
-            const Traction t = across(column, row, 1, 0, stretch, (v_north[i] + v_north[j]) / 2,
-                                      (turn + (u_north[i] + u_north[j]) / 2) / 2);
-            fields_.pull_east[i] = t.pull;
-            fields_.drag_east[i] = t.drag;
-        }
-        if (touch(column, row, 0, 1)) {
-            const std::size_t j = i + static_cast<std::size_t>(grid_.columns);
-            const float stretch = (solver_.v_at(column, row + 1) - solver_.v_at(column, row)) * inverse_cell_;
-            const float turn = (solver_.u_at(column, row + 1) - solver_.u_at(column, row)) * inverse_cell_;
-            const Traction t = across(column, row, 0, 1, stretch, (u_east[i] + u_east[j]) / 2,
-                                      (turn + (v_east[i] + v_east[j]) / 2) / 2);
-            fields_.pull_north[i] = t.pull;
-            fields_.drag_north[i] = t.drag;
-        }
+        const std::size_t i = f_.index(column, row), j = i + f_.stride;
+        const CellRow here = solver_.row(row), north = solver_.row(row + 1);
+        const float *u = here.u + column, *v = here.v + column;
+        const float *u_above = north.u + column, *v_above = north.v + column;
+        const L depth = L::load(here.depth + column);
+        across(i, i + 1, L::load(&f_.touch_east[i]), {depth, L::load(here.depth + column + 1)}, slope(u, u + 1),
+               slope(v, v + 1), f_.v_north, f_.u_north, &f_.pull_east[i], &f_.drag_east[i]);
+        across(i, j, L::load(&f_.touch_north[i]), {depth, L::load(north.depth + column)}, slope(v, v_above),
+               slope(u, u_above), f_.u_east, f_.v_east, &f_.pull_north[i], &f_.drag_north[i]);
+    }
+    void find_velocities(int column, int row) {
+        const std::size_t i = f_.index(column, row), south = i - f_.stride;
+        const CellRow here = solver_.row(row);
+        const L west_touches = L::load(&f_.touch_west[i]), south_touches = L::load(&f_.touch_south[i]);
+        const auto sum = [&](const std::vector<float>& east, const std::vector<float>& north) {
+            return L::load(&east[i]) - west_touches * L::load(&east[i - 1]) + L::load(&north[i]) -
+                   south_touches * L::load(&north[south]);
+        };
+        const L depth = L::load(here.depth + column);
+        const L x = sum(f_.pull_east, f_.drag_north), y = sum(f_.drag_east, f_.pull_north);
+        (L::load(here.u + column) + L(over_mass_) * x / depth).store(&f_.u[i]);
+        (L::load(here.v + column) + L(over_mass_) * y / depth).store(&f_.v[i]);
     }
 
   private:
-    /// On the debris before a face, from that behind it, per density and length of the face, m3/s2: along the normal of
-    /// the face and along the face.
-    struct Traction {
-        float pull = 0, drag = 0;
-    };
-    /// Of velocities, to the next cell; 0 where that does not touch.
-    struct Difference {
-        float u = 0, v = 0, cells = 0;
-    };
-
-    [[nodiscard]] float depth(int column, int row) const { return solver_.depth_at(column, row); }
-    [[nodiscard]] bool touch(int column, int row, int east, int north) const {
-        return depth(column, row) > dry_depth && depth(column + east, row + north) > dry_depth &&
-               solver_.built(column, row) == solver_.built(column + east, row + north);
+    [[nodiscard]] L slope(const float* from, const float* to) const {
+        return (L::load(to) - L::load(from)) * L(inverse_cell_);
     }
-    [[nodiscard]] Difference difference(int column, int row, int east, int north) const {
-        if (!touch(column, row, east, north)) return {};
-        return {solver_.u_at(column + east, row + north) - solver_.u_at(column, row),
-                solver_.v_at(column + east, row + north) - solver_.v_at(column, row), 1};
-    }
-    [[nodiscard]] float mean(float before, float after, float cells) const {
-        return cells > 0 ? (before + after) * inverse_cell_ / cells : 0;
-    }
-    [[nodiscard]] Traction across(int column, int row, int east, int north, float stretch, float aside,
-                                  float shear) const {
-        const float rise = -(stretch + aside);  // volume stays
-        const float rate = std::sqrt(stretch * stretch + aside * aside + rise * rise + 2 * shear * shear);
-        if (!(rate > 0)) return {};
-        const float here = solver_.carries_pore_pressure() ? solver_.pore_pressure_ratio_at(column, row) : 0;
-        const float there =
-            solver_.carries_pore_pressure() ? solver_.pore_pressure_ratio_at(column + east, row + north) : 0;
-        const float limit = limit_ * (1 - (here + there) / 2);
-        const float weight =
-            std::min(fields_.weight[grid_.index(column, row)], fields_.weight[grid_.index(column + east, row + north)]);
-        const float pressure = weight / std::max(least_relief, 1 - limit * rise / rate);
-        const float thinner = std::min(depth(column, row), depth(column + east, row + north));
-        const float over_rate = std::min(limit * pressure / rate, stiffest_ * thinner);
-        return {over_rate * (stretch - rise), over_rate * shear};
+    /// On the debris before faces between cells i and j, from that behind them, per density and length of a face,
+    /// m3/s2: along its normal and along it. `stretch`, `turn`: of the velocity along the normal and of that along the
+    /// face, in the direction of the normal; `aside`, `skew`: gradients of both along the face.
+    void across(std::size_t i, std::size_t j, const L& touches, const std::array<L, 2>& depths, const L& stretch,
+                const L& turn, const std::vector<float>& along, const std::vector<float>& skew, float* pull,
+                float* drag) const {
+        const L aside = (L::load(&along[i]) + L::load(&along[j])) * L(0.5);
+        const L shear = (turn + (L::load(&skew[i]) + L::load(&skew[j])) * L(0.5)) * L(0.5);
+        const L rise = -(stretch + aside);  // volume stays
+        const L rate = sqrt(stretch * stretch + aside * aside + rise * rise + L(2) * shear * shear);
+        const L limit = L(limit_) * (L(1) - (L::load(&f_.ratio[i]) + L::load(&f_.ratio[j])) * L(0.5));
+        const L weight = smaller(L::load(&f_.weight[i]), L::load(&f_.weight[j]));
+        const L pressure = weight / larger(L(least_relief), L(1) - limit * rise / rate);
+        const L over_rate = smaller(limit * pressure / rate, L(stiffest_) * smaller(depths[0], depths[1]));
+        const auto acts = (touches > L(0)) & (rate > L(0));
+        select(acts, over_rate * (stretch - rise), L(0)).store(pull);
+        select(acts, over_rate * shear, L(0)).store(drag);
     }
 
     const Solver& solver_;
-    InternalFriction::Fields& fields_;
-    const GridGeometry& grid_;
-    float gravity_, inverse_cell_, limit_, stiffest_;
+    InternalFriction::Fields& f_;
+    float gravity_, inverse_cell_, limit_, stiffest_, over_mass_;
 };
-
-/// Calls f(column, row) in parallel for all cells with debris.
-template <class F>
-void for_each_wet(const Solver& solver, const F& f) {
-    simd::parallel_ranges(static_cast<std::size_t>(solver.geometry().rows), 8,
-                          [&](std::size_t first, std::size_t last) {
-                              for (auto r = static_cast<int>(first); r < static_cast<int>(last); ++r) {
-                                  for_each_deeper(solver.row(r), dry_depth, [&](int column) { f(column, r); });
-                              }
-                          });
-}
 
 }  // namespace
 
 InternalFriction::InternalFriction(const Solver& solver, double coefficient) : coefficient_(coefficient) {
     if (!(coefficient > 0)) return;
-    for (std::vector<float>* field : fields_.all()) field->resize(solver.geometry().size());
+    const GridGeometry& grid = solver.geometry();
+    fields_.stride = static_cast<std::size_t>(grid.columns) + 2 * L::size;
+    for (std::vector<float>* field : fields_.all()) {
+        field->resize((static_cast<std::size_t>(grid.rows) + 2) * fields_.stride);
+    }
+    for (int row = 0; row < grid.rows; ++row) {
+        for (int column = 0; column < grid.columns; ++column) {
+            fields_.built[fields_.index(column, row)] = solver.built(column, row) ? 1 : 0;
+        }
+    }
 }
 
 void InternalFriction::resist(Solver& solver) {
     if (!(coefficient_ > 0)) return;
     const GridGeometry& grid = solver.geometry();
     const double step = solver.time_step() / passes;
-    const float over_mass = static_cast<float>(step / grid.cell);
     const double everywhere = solver.carries_pore_pressure() ? 0 : solver.material().pore_pressure_ratio;
     Stress stress(solver, fields_, static_cast<float>(std::sqrt(2.0) * coefficient_ * (1 - everywhere)),
-                  static_cast<float>(stable_share * grid.cell * grid.cell / step));
-    for_each_wet(solver, [&](int column, int row) { stress.find_weight(column, row); });
+                  static_cast<float>(stable_share * grid.cell * grid.cell / step),
+                  static_cast<float>(step / grid.cell));
+    for_each_wet(solver, [&](int column, int row) { stress.prepare(column, row); });
     for (int pass = 0; pass < passes; ++pass) {
         for_each_wet(solver, [&](int column, int row) { stress.find_gradients(column, row); });
         for_each_wet(solver, [&](int column, int row) { stress.find_tractions(column, row); });
-        solver.for_each_active_row([&](const CellRow& row) {
-            const auto up = static_cast<std::size_t>(grid.columns);
-            for_each_deeper(row, dry_depth, [&](int k) {
-                const int column = row.first + k;
-                const std::size_t i = grid.index(column, row.row);
-                const bool west = solver.depth_at(column - 1, row.row) > dry_depth;
-                const bool south = solver.depth_at(column, row.row - 1) > dry_depth;
-                const Fields& f = fields_;
-                const float x = f.pull_east[i] - (west ? f.pull_east[i - 1] : 0) + f.drag_north[i] -
-                                (south ? f.drag_north[i - up] : 0);
-                const float y = f.drag_east[i] - (west ? f.drag_east[i - 1] : 0) + f.pull_north[i] -
-                                (south ? f.pull_north[i - up] : 0);
-                fields_.u[i] = row.u[k] + over_mass * x / row.depth[k];
-                fields_.v[i] = row.v[k] + over_mass * y / row.depth[k];
-            });
-        });
+        for_each_wet(solver, [&](int column, int row) { stress.find_velocities(column, row); });
         solver.for_each_active_row_in_turn([&](const CellRow& row) {
             for_each_deeper(row, dry_depth, [&](int k) {
-                const std::size_t i = grid.index(row.first + k, row.row);
+                const std::size_t i = fields_.index(row.first + k, row.row);
                 if (fields_.u[i] == row.u[k] && fields_.v[i] == row.v[k]) return;
                 solver.set_velocity(row.first + k, row.row, fields_.u[i], fields_.v[i]);
             });

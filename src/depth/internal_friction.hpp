@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <vector>
 
 #include "depth/solver.hpp"
@@ -18,16 +19,24 @@ class InternalFriction {
 
     void resist(Solver& solver);
 
-    /// By cell of the grid; only those of cells with debris are in use.
+    /// By cell of the grid and of a margin around it, which holds no debris. What cells without debris have is not
+    /// used.
     struct Fields {
-        std::vector<float> weight;                            ///< m3/s2, pressure summed over the depth, per density
-        std::vector<float> u_east, v_east, u_north, v_north;  ///< 1/s, gradients
-        std::vector<float> pull_east, drag_east;              ///< m3/s2, across the eastern face: along its normal,
-        std::vector<float> pull_north, drag_north;            ///< along the face; and across the northern one
-        std::vector<float> u, v;                              ///< m/s, after a pass
+        std::size_t stride = 0;
+        std::vector<float> built;          ///< 1: a structure stands there
+        std::vector<float> weight, ratio;  ///< m3/s2, pressure summed over the depth, per density; pore-pressure ratio
+        std::vector<float> touch_east, touch_west, touch_north, touch_south;  ///< 1: that neighbour's debris
+        std::vector<float> u_east, v_east, u_north, v_north;                  ///< 1/s, gradients
+        /// m3/s2, on the debris of the cell across its eastern and its northern face: along the normal, along the face.
+        std::vector<float> pull_east, drag_east, pull_north, drag_north;
+        std::vector<float> u, v;  ///< m/s, after a pass
         [[nodiscard]] auto all() {
-            return std::array{&weight,    &u_east,     &v_east,     &u_north, &v_north, &pull_east,
-                              &drag_east, &pull_north, &drag_north, &u,       &v};
+            return std::array{&built,       &weight,     &ratio,      &touch_east, &touch_west, &touch_north,
+                              &touch_south, &u_east,     &v_east,     &u_north,    &v_north,    &pull_east,
+                              &drag_east,   &pull_north, &drag_north, &u,          &v};
+        }
+        [[nodiscard]] std::size_t index(int column, int row) const {
+            return static_cast<std::size_t>(row + 1) * stride + static_cast<std::size_t>(column + 1);
         }
     };
 
