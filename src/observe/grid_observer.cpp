@@ -165,13 +165,16 @@ void GridObserver::after_step(const depth::Solver& solver, double held, double s
     read_gauges(solver, row);
     if (!row) return;
     const GridGeometry& g = solver.geometry();
+    constexpr float none = std::numeric_limits<float>::lowest();
+    float front = std::isnan(front_) ? none : static_cast<float>(front_);
     for (int r = 0; r < g.rows; ++r) {
         const float* arrival = &arrival_time_.values[g.index(0, r)];
         const float* chainage = &chainage_[g.index(0, r)];
         depth::for_each_of_few(
-            g.columns, [&](int k) { return !std::isnan(arrival[k]); },
-            [&](int k) { front_ = std::fmax(front_, chainage[k]); });
+            g.columns, [&](int k) { return arrival[k] >= 0 && chainage[k] > front; },  // NaN: not reached, no chainage
+            [&](int k) { front = chainage[k]; });
     }
+    if (front > none) front_ = front;
     add_row(solver, held, steps_per_second);
 }
 
