@@ -19,7 +19,7 @@ Result<CommandToMap> measure_command_to_map(const std::filesystem::path& builtin
     const std::vector<std::string> settings = {"solver.model=depth_averaged", "solver.grid_cell_m=2.5",
                                                "solver.thread_count=1"};
     return run::Threads(1).execute([&]() -> Result<CommandToMap> {
-        std::vector<double> seconds, relative_rates;
+        std::vector<double> seconds, relative_rates, steps_rates;
         (void)calibration.measure();  // wakes the thread
         for (int repeat = 0; repeat < repeats; ++repeat) {
             const double rate_before = calibration.measure();
@@ -30,9 +30,11 @@ Result<CommandToMap> measure_command_to_map(const std::filesystem::path& builtin
             if (result.fault) return Error{result.fault->sentence};
             TALUS_TRY(products::write_products(scene, result, folder.path()));
             seconds.push_back(watch.seconds() - result.step_time());
-            relative_rates.push_back(2e9 / (seconds.back() * (rate_before + calibration.measure())));
+            const double rate = (rate_before + calibration.measure()) / 2;
+            relative_rates.push_back(1e9 / (seconds.back() * rate));
+            steps_rates.push_back(static_cast<double>(result.cell_updates) / (result.step_time() * rate));
         }
-        return CommandToMap{median(seconds), median(relative_rates)};
+        return CommandToMap{median(seconds), median(relative_rates), median(steps_rates)};
     });
 }
 

@@ -12,8 +12,8 @@ struct CellRow {
     const float* climb = nullptr;                              ///< m/s, see Solver::climb_at(); null: 0
 };
 
-/// Calls f(k) for every k below `count` for which holds(k). Where that is true of few, sixteen of the others cost no
-/// more than a look at their values.
+/// Calls f(k) for every k below `count` for which holds(k). Meant for few such k: sixteen others cost a look each,
+/// which compilers vectorise. holds(k) may be called twice, and after f has changed what it sees.
 template <class Holds, class F>
 void for_each_of_few(int count, const Holds& holds, const F& f) {
     constexpr int strip = 16;

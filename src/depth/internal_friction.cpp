@@ -1,6 +1,5 @@
 #include "depth/internal_friction.hpp"
 
-#include <algorithm>
 #include <cmath>
 
 #include "depth/formulas.hpp"
@@ -26,21 +25,27 @@ L larger(const L& a, const L& b) {
     return select(a < b, b, a);
 }
 
-/// Calls f(column, row) in parallel for cells side by side, as many as lanes, of which some may hold debris.
-template <class F>
-void for_each_wet(const Solver& solver, const F& f) {
+void find_wet(const Solver& solver, std::vector<InternalFriction::Group>& wet) {
     const GridGeometry& grid = solver.geometry();
-    simd::parallel_ranges(static_cast<std::size_t>(grid.rows), 8, [&](std::size_t first, std::size_t last) {
-        for (auto r = static_cast<int>(first); r < static_cast<int>(last); ++r) {
-            const float* depth = solver.row(r).depth;
-            for (int column = 0; column < grid.columns; column += L::size) {
-                if (any(L::load(depth + column) > L(dry_depth))) f(column, r);
-            }
+    wet.clear();
+    for (int row = 0; row < grid.rows; ++row) {
+        const float* depth = solver.row(row).depth;
+        for (int column = 0; column < grid.columns; column += L::size) {
+            if (any(L::load(depth + column) > L(dry_depth))) wet.push_back({column, row});
         }
+    }
+}
+
+/// Calls f(column, row) in parallel for groups of cells.
+template <class F>
+void for_each(const std::vector<InternalFriction::Group>& groups, const F& f) {
+    simd::parallel_ranges(groups.size(), 256, [&](std::size_t first, std::size_t last) {
+        for (std::size_t k = first; k < last; ++k) f(groups[k].column, groups[k].row);
     });
 }
 
-/// The debris and its neighbours. A cell touches another where both hold debris and both, or neither, are built.
+/// The debris and its neighbours. A cell touches another where both hold debris, and a structure stands in both or in
+/// neither.
 class Stress {
   public:
     /// `limit`: of its norm, over the pressure, or that of the grains where r_u differs; `stiffest`: stress over strain
@@ -66,8 +71,9 @@ class Stress {
         };
         touch(depth + 1, i + 1).store(&f_.touch_east[i]);
         touch(depth - 1, i - 1).store(&f_.touch_west[i]);
-        touch(solver_.row(row + 1).depth + column, i + f_.stride).store(&f_.touch_north[i]);
-        touch(solver_.row(row - 1).depth + column, i - f_.stride).store(&f_.touch_south[i]);
+        const bool north = row + 1 < solver_.geometry().rows, south = row > 0;  // continued edges bear no stress
+        (north ? touch(solver_.row(row + 1).depth + column, i + f_.stride) : L(0)).store(&f_.touch_north[i]);
+        (south ? touch(solver_.row(row - 1).depth + column, i - f_.stride) : L(0)).store(&f_.touch_south[i]);
         const L x = L::load(here.slope_x + column), y = L::load(here.slope_y + column);
         (L(gravity_) * h * h / (L(2) * (L(1) + x * x + y * y))).store(&f_.weight[i]);
         if (!solver_.carries_pore_pressure()) return;
@@ -82,7 +88,8 @@ class Stress {
         const L above = L::load(&f_.touch_north[i]), below = L::load(&f_.touch_south[i]);
         const auto gradient = [&](const L& at, const float* before, const L& touches_before, const float* after,
                                   const L& touches_after) {
-            const L change = touches_before * (at - L::load(before)) + touches_after * (L::load(after) - at);
+            const L change = select(touches_before > L(0), at - L::load(before), L(0)) +
+                             select(touches_after > L(0), L::load(after) - at, L(0));
             const L cells = touches_before + touches_after;
             return select(cells > L(0), change * L(inverse_cell_) / cells, L(0));
         };
@@ -108,12 +115,12 @@ class Stress {
                slope(u, u_above), f_.u_east, f_.v_east, &f_.pull_north[i], &f_.drag_north[i]);
     }
     void find_velocities(int column, int row) {
-        const std::size_t i = f_.index(column, row), south = i - f_.stride;
+        const std::size_t i = f_.index(column, row);
         const CellRow here = solver_.row(row);
-        const L west_touches = L::load(&f_.touch_west[i]), south_touches = L::load(&f_.touch_south[i]);
+        const auto west = L::load(&f_.touch_west[i]) > L(0), south = L::load(&f_.touch_south[i]) > L(0);
         const auto sum = [&](const std::vector<float>& east, const std::vector<float>& north) {
-            return L::load(&east[i]) - west_touches * L::load(&east[i - 1]) + L::load(&north[i]) -
-                   south_touches * L::load(&north[south]);
+            return L::load(&east[i]) - select(west, L::load(&east[i - 1]), L(0)) + L::load(&north[i]) -
+                   select(south, L::load(&north[i - f_.stride]), L(0));
         };
         const L depth = L::load(here.depth + column);
         const L x = sum(f_.pull_east, f_.drag_north), y = sum(f_.drag_east, f_.pull_north);
@@ -158,6 +165,7 @@ InternalFriction::InternalFriction(const Solver& solver, double coefficient) : c
     for (std::vector<float>* field : fields_.all()) {
         field->resize((static_cast<std::size_t>(grid.rows) + 2) * fields_.stride);
     }
+    wet_.reserve(solver.geometry().size() / L::size + static_cast<std::size_t>(grid.rows));
     for (int row = 0; row < grid.rows; ++row) {
         for (int column = 0; column < grid.columns; ++column) {
             fields_.built[fields_.index(column, row)] = solver.built(column, row) ? 1 : 0;
@@ -173,11 +181,12 @@ void InternalFriction::resist(Solver& solver) {
     Stress stress(solver, fields_, static_cast<float>(std::sqrt(2.0) * coefficient_ * (1 - everywhere)),
                   static_cast<float>(stable_share * grid.cell * grid.cell / step),
                   static_cast<float>(step / grid.cell));
-    for_each_wet(solver, [&](int column, int row) { stress.prepare(column, row); });
+    find_wet(solver, wet_);  // depths stay during the passes
+    for_each(wet_, [&](int column, int row) { stress.prepare(column, row); });
     for (int pass = 0; pass < passes; ++pass) {
-        for_each_wet(solver, [&](int column, int row) { stress.find_gradients(column, row); });
-        for_each_wet(solver, [&](int column, int row) { stress.find_tractions(column, row); });
-        for_each_wet(solver, [&](int column, int row) { stress.find_velocities(column, row); });
+        for_each(wet_, [&](int column, int row) { stress.find_gradients(column, row); });
+        for_each(wet_, [&](int column, int row) { stress.find_tractions(column, row); });
+        for_each(wet_, [&](int column, int row) { stress.find_velocities(column, row); });
         solver.for_each_active_row_in_turn([&](const CellRow& row) {
             for_each_deeper(row, dry_depth, [&](int k) {
                 const std::size_t i = fields_.index(row.first + k, row.row);

@@ -19,14 +19,18 @@ class InternalFriction {
 
     void resist(Solver& solver);
 
-    /// By cell of the grid and of a margin around it, which holds no debris. What cells without debris have is not
-    /// used.
+    /// Cells side by side, as many as lanes.
+    struct Group {
+        int column = 0, row = 0;  ///< of the first
+    };
+    /// By cell of the grid and of a margin around it. What cells without debris have is not used.
     struct Fields {
         std::size_t stride = 0;
         std::vector<float> built;          ///< 1: a structure stands there
         std::vector<float> weight, ratio;  ///< m3/s2, pressure summed over the depth, per density; pore-pressure ratio
-        std::vector<float> touch_east, touch_west, touch_north, touch_south;  ///< 1: that neighbour's debris
-        std::vector<float> u_east, v_east, u_north, v_north;                  ///< 1/s, gradients
+        std::vector<float> touch_east, touch_west, touch_north,
+            touch_south;                                      ///< 1: the debris touches that neighbour's
+        std::vector<float> u_east, v_east, u_north, v_north;  ///< 1/s, gradients
         /// m3/s2, on the debris of the cell across its eastern and its northern face: along the normal, along the face.
         std::vector<float> pull_east, drag_east, pull_north, drag_north;
         std::vector<float> u, v;  ///< m/s, after a pass
@@ -43,6 +47,7 @@ class InternalFriction {
   private:
     double coefficient_;
     Fields fields_;
+    std::vector<Group> wet_;  ///< of which some cells hold debris
 };
 
 }  // namespace talus::depth

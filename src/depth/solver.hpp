@@ -170,7 +170,8 @@ class Solver {
         }
     }
 
-    /// The state of a whole row, -1 to the number of rows: dry unknown ground lies around the grid.
+    /// The state of a whole row, -1 to the number of rows: unknown ground lies around the grid, dry unless its edges
+    /// are continued.
     [[nodiscard]] CellRow row(int row) const { return cell_row(row, 0, geometry_.columns); }
 
     /// Hash of time, depths and velocities of all cells, and of the pore pressure that debris carries.

@@ -58,6 +58,8 @@ inline constexpr std::span deposit_numbers = std::span(named_numbers).subspan<6,
 inline constexpr std::span volume_numbers = std::span(named_numbers).last<6>();
 inline constexpr const NamedNumber& run_out_number = named_numbers[0];
 inline constexpr const NamedNumber& front_number = named_numbers[5];
+static_assert(front_number.key == "front_chainage_m" && deposit_numbers.front().key == "deposit_area_m2" &&
+              volume_numbers.front().key == "volume_released_m3");
 
 /// nullptr: none of that name.
 [[nodiscard]] constexpr const NamedNumber* find_number(std::string_view key) {
@@ -77,9 +79,9 @@ struct NamedPeak {
 
 /// In the order of the maps.
 inline constexpr std::array peak_numbers = {
-    NamedPeak{"peak_depth_m", named_maps[0], &Peaks::depth},
-    NamedPeak{"peak_speed_mps", named_maps[1], &Peaks::speed},
-    NamedPeak{"peak_dynamic_pressure_kPa", named_maps[2], &Peaks::pressure},
+    NamedPeak{"peak_depth_m", *find_map("peak_depth"), &Peaks::depth},
+    NamedPeak{"peak_speed_mps", *find_map("peak_speed"), &Peaks::speed},
+    NamedPeak{"peak_dynamic_pressure_kPa", *find_map("peak_pressure"), &Peaks::pressure},
 };
 
 /// A unit of files and messages as reports print it.

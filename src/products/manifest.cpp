@@ -165,7 +165,7 @@ Json results(const run::RunResult& result) {
     }
     Json volumes = Json::object();
     for (const observe::NamedNumber& volume : observe::volume_numbers) {
-        volumes[std::string(volume.key.substr(sizeof "volume_" - 1))] = volume.value(o);
+        volumes[std::string(volume.key.substr(std::string_view("volume_").size()))] = volume.value(o);
     }
     const observe::Hits buildings = hits_among(o.buildings, false), barriers = hits_among(o.buildings, true);
     Json all = run_out_json(o);

@@ -47,7 +47,7 @@ std::vector<Quantity> quantities(const BothModels& models, const run::SecondOpin
                    opinion.area.both + opinion.area.only_second});
     add_number("deposit_area_m2", square_metres);
     add_number("deposit_depth_m", metres(2));
-    all.back().name += ", which nine tenths stay below";
+    all.back().name += " that nine tenths of its area stay below";
     for (std::size_t k = 0; k < run::peak_pairs.size(); ++k) {
         const observe::NamedMap& map = observe::peak_numbers[k].map;
         const run::MapPair& maps = opinion.*run::peak_pairs[k];

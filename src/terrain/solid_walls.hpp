@@ -34,11 +34,12 @@ struct WallEdge {
         return grain_rank < net_share || hidden_by_nets < hidden_below ? hidden_below : hidden_by_nets;
     }
     /// Whether it is certainly farther than `distance` from a position, as its box is. Most edges are: this spares them
-    /// a division and a square root. The margin is far beyond rounding, so that results do not change.
+    /// a division and a square root. A margin of a nanometre is beyond rounding, so that results do not change.
     [[nodiscard]] TALUS_DEVICE bool beyond(double distance, double x, double y) const {
         const double east = std::max(0.0, std::max(std::min(ax, bx) - x, x - std::max(ax, bx)));
         const double north = std::max(0.0, std::max(std::min(ay, by) - y, y - std::max(ay, by)));
-        return east * east + north * north > distance * distance * (1 + 1e-9);
+        const double reach = distance + 1e-9;
+        return east * east + north * north > reach * reach;
     }
 };
 /// A part of a building's footprint.

@@ -15,6 +15,7 @@ TEST(CommandToMap, is_the_time_of_everything_but_the_steps) {
     ASSERT_TRUE(measured) << measured.error().message;
     EXPECT_GT(measured->seconds, 0.01);  // some ten files and a report
     EXPECT_GT(measured->relative_rate, 0);
+    EXPECT_GT(measured->steps_rate, 0);
 }
 
 TEST(CommandToMap, says_which_scene_cannot_be_read) {

@@ -67,11 +67,16 @@ TEST(NumberNames, parts_of_the_table_are_what_they_say) {
     for (const NamedNumber& number : volume_numbers) {
         EXPECT_TRUE(number.key.starts_with("volume_")) << number.key;
         ASSERT_NE(number.sample, nullptr) << number.key;
-        now.*number.sample += 1;
     }
-    EXPECT_EQ(now.volume_released + now.volume_entrained + now.volume_held + now.volume_moving + now.volume_deposited +
-                  now.volume_left,
-              6);
+    now.volume_released = 1;
+    now.volume_entrained = 2;
+    now.volume_held = 3;
+    now.volume_moving = 4;
+    now.volume_deposited = 5;
+    now.volume_left = 6;
+    for (std::size_t k = 0; k < volume_numbers.size(); ++k) {
+        EXPECT_EQ(now.*volume_numbers[k].sample, static_cast<double>(k + 1)) << volume_numbers[k].key;
+    }
 }
 
 /// The entry of a list whose `key` is this; null: none.
