@@ -71,9 +71,8 @@ class Stress {
         };
         touch(depth + 1, i + 1).store(&f_.touch_east[i]);
         touch(depth - 1, i - 1).store(&f_.touch_west[i]);
-        const bool north = row + 1 < solver_.geometry().rows, south = row > 0;  // continued edges bear no stress
-        (north ? touch(solver_.row(row + 1).depth + column, i + f_.stride) : L(0)).store(&f_.touch_north[i]);
-        (south ? touch(solver_.row(row - 1).depth + column, i - f_.stride) : L(0)).store(&f_.touch_south[i]);
+        touch(solver_.row(row + 1).depth + column, i + f_.stride).store(&f_.touch_north[i]);
+        touch(solver_.row(row - 1).depth + column, i - f_.stride).store(&f_.touch_south[i]);
         const L x = L::load(here.slope_x + column), y = L::load(here.slope_y + column);
         (L(gravity_) * h * h / (L(2) * (L(1) + x * x + y * y))).store(&f_.weight[i]);
         if (!solver_.carries_pore_pressure()) return;

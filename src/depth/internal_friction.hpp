@@ -14,7 +14,7 @@ namespace talus::depth {
 /// set. Allocates nothing after construction.
 class InternalFriction {
   public:
-    /// `coefficient`: Coulomb's, inside the debris; 0: none.
+    /// `solver`: one with open edges. `coefficient`: Coulomb's, inside the debris; 0: none.
     InternalFriction(const Solver& solver, double coefficient);
 
     void resist(Solver& solver);
