@@ -12,8 +12,8 @@ struct CellRow {
     const float* climb = nullptr;                              ///< m/s, see Solver::climb_at(); null: 0
 };
 
-/// Calls f(k) for every k below `count` for which holds(k). Meant for few such k: sixteen others cost a look each,
-/// which compilers vectorise. holds(k) may be called twice, and after f has changed what it sees.
+/// Calls f(k) for every k below `count` for which holds(k) is true. Fast where that is true of few: sixteen are checked
+/// at once. holds(k) may be called twice, and again after f has changed what it depends on.
 template <class Holds, class F>
 void for_each_of_few(int count, const Holds& holds, const F& f) {
     constexpr int strip = 16;

@@ -171,7 +171,8 @@ void GridObserver::after_step(const depth::Solver& solver, double held, double s
         const float* arrival = &arrival_time_.values[g.index(0, r)];
         const float* chainage = &chainage_[g.index(0, r)];
         depth::for_each_of_few(
-            g.columns, [&](int k) { return arrival[k] >= 0 && chainage[k] > front; },  // NaN: not reached, no chainage
+            g.columns,
+            [&](int k) { return arrival[k] >= 0 && chainage[k] > front; },  // NaN: not reached, or off the path
             [&](int k) { front = chainage[k]; });
     }
     if (front > none) front_ = front;

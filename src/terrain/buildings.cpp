@@ -225,7 +225,7 @@ void BuildingSolids::fill_bins() {
     for (const Solid& solid : solids_) {
         extents.push_back(Extent{solid.x_min, solid.y_min, solid.x_max, solid.y_max}.grown(range_));
     }
-    constexpr double smallest_bin = 0.25;  // m: what a bin holds beyond its extents costs every particle there a look
+    constexpr double smallest_bin = 0.25;  // m; in a larger one, particles out of a solid's range look at it too
     bins_ = PlanBins(extents, std::max(range_, smallest_bin));
 }
 

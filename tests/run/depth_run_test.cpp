@@ -1,6 +1,8 @@
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <optional>
+#include <vector>
 
 #include <gmock/gmock.h>
 
@@ -56,6 +58,21 @@ TEST_F(DepthAveragedRun, has_the_results_of_a_run) {
     const double velocity = front_at(o, 60).front_velocity;
     EXPECT_GT(velocity, 6);
     EXPECT_LT(velocity, 16);
+}
+
+TEST_F(DepthAveragedRun, says_on_its_way_how_far_its_front_has_come) {
+    const scene::Scene scene = loaded("");
+    std::vector<double> fronts;
+    RunOptions options;
+    options.on_progress = [&](const Progress& now) {
+        if (!std::isnan(now.front_chainage)) fronts.push_back(now.front_chainage);
+    };
+    const auto result = run_scene(scene, options);
+    ASSERT_TRUE(result) << result.error().message;
+    ASSERT_GT(fronts.size(), 10U);
+    EXPECT_TRUE(std::is_sorted(fronts.begin(), fronts.end()));
+    EXPECT_LT(fronts.front(), 60);
+    EXPECT_NEAR(fronts.back(), result->observation.front.back().chainage, 5) << "two cells";
 }
 
 TEST_F(DepthAveragedRun, differs_little_from_the_particles_where_both_see_a_slab_slide) {
