@@ -127,6 +127,11 @@ export class Run {
     const page = await context.newPage();
     if (name) await page.addInitScript((n) => localStorage.setItem("talus-name", n), name);
     await page.addInitScript((l) => localStorage.getItem("talus-look") ?? localStorage.setItem("talus-look", l), look);
+    // Without a graphics card pictures take all of the processor that they get: ten a second show as much to a test as sixty.
+    await page.addInitScript((least_ms) => {
+      const ask = window.requestAnimationFrame.bind(window);
+      window.requestAnimationFrame = (draw) => setTimeout(() => ask(draw), least_ms);
+    }, 100);
     if (edits) await page.addInitScript((habit) => sessionStorage.getItem("talus-edits") ?? sessionStorage.setItem("talus-edits", habit), edits);
     page.on("console", (message) => {
       if (["error", "warning"].includes(message.type()) && !/WebSocket connection|ERR_CONNECTION|GPU stall|GL Driver|Failed to load resource|does not answer|software WebGL/i.test(message.text())) {
