@@ -42,7 +42,7 @@ set(talus_headers <algorithm> <array> <atomic> <chrono> <cmath> <condition_varia
 function(talus_precompile name)
   file(CONFIGURE OUTPUT headers_${name}.cpp CONTENT "")
   add_library(talus_headers_${name} OBJECT ${CMAKE_CURRENT_BINARY_DIR}/headers_${name}.cpp)
-  target_link_libraries(talus_headers_${name} PRIVATE talus_options fmt::fmt nlohmann_json::nlohmann_json)
+  target_link_libraries(talus_headers_${name} PRIVATE talus_options nlohmann_json::nlohmann_json)
   target_precompile_headers(talus_headers_${name} PRIVATE ${talus_headers} ${ARGN})
 endfunction()
 
