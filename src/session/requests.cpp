@@ -117,12 +117,20 @@ Result<std::optional<double>> number_of(const Arguments& arguments, const std::s
 
 const std::vector<Question>& questions() {
     static const std::vector<Question> known{
-        plain("state", &Scenarios::state),        plain("setup", &Scenarios::setup),
-        plain("series", twin::series_json),       plain("journal", twin::journal_json),
-        plain("recording", twin::recording_json), table("impacts", twin::impacts_json),
-        table("gauges", twin::gauges_json),       {"frame", {"time_s"}, true, frame},
-        {"probe", {"x_m", "y_m"}, true, probe},   {"figures", {}, true, figures},
-        {"observed", {}, true, observed},         {"layers/{name}", {"time_s"}, true, layer},
+        plain("state", &Scenarios::state),  // with what the session knows
+        plain("setup", &Scenarios::setup),
+        // From the scenario itself.
+        plain("series", twin::series_json),
+        plain("journal", twin::journal_json),
+        plain("recording", twin::recording_json),
+        table("impacts", twin::impacts_json),
+        table("gauges", twin::gauges_json),
+        // With work for another thread.
+        {"frame", {"time_s"}, true, frame},
+        {"probe", {"x_m", "y_m"}, true, probe},
+        {"figures", {}, true, figures},
+        {"observed", {}, true, observed},
+        {"layers/{name}", {"time_s"}, true, layer},
     };
     return known;
 }

@@ -3,6 +3,7 @@
 #include <thread>
 #include <vector>
 
+#include "twin/depth_averaged.hpp"
 #include "twin_fixtures.hpp"
 
 namespace talus::twin::test {
