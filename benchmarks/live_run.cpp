@@ -1,4 +1,6 @@
 // A live scenario: its step compared with that of a plain run, and its frames.
+#include "twin/live_run.hpp"
+
 #include <cmath>
 #include <map>
 #include <memory>
@@ -67,14 +69,14 @@ BENCHMARK(plain_step)->Apply(sizes)->UseRealTime();
 /// The current frame, for which the steps wait.
 void live_frame_made(benchmark::State& run) {
     const twin::Scenario& scenario = scenario_of(run.range(0));
-    for (auto _ : run) benchmark::DoNotOptimize(scenario.frame(1, 0));
+    for (auto _ : run) benchmark::DoNotOptimize(scenario.run().frame(1, 0));
 }
 BENCHMARK(live_frame_made)->Apply(sizes)->UseRealTime();
 
 /// The same as sent: compressed, by another thread.
 void live_frame(benchmark::State& run) {
     const twin::Scenario& scenario = scenario_of(run.range(0));
-    const twin::FramePtr frame = scenario.frame(1, 0);
+    const twin::FramePtr frame = scenario.run().frame(1, 0);
     std::size_t bytes = 0;
     for (auto _ : run) bytes = twin::encode(*frame, 0).size();
     run.counters["bytes"] = static_cast<double>(bytes);

@@ -12,6 +12,7 @@
 #include "core/grid.hpp"
 #include "core/try.hpp"
 #include "hooks.hpp"
+#include "twin/live_run.hpp"
 #include "twin/scenario.hpp"
 
 namespace talus::embed {

@@ -66,19 +66,19 @@ void give(std::unique_ptr<Scenario> scenario, bool can_be_saved, talus_simulatio
     for (const std::string& note : opened.scene().notes) tell(TALUS_LOG_WARNING, note);
     tell(TALUS_LOG_INFO,
          fmt::format("opened \"{}\" at t = {:.4g} s: {} particles of {:.3g} m3", opened.scene().spec.scene.title,
-                     opened.time(), opened.state().count, opened.model().particle_volume()));
+                     opened.time(), opened.run().state().count, opened.run().model().particle_volume()));
     *simulation = made.release();
 }
 
 /// The longest step that may come next, s.
 double longest_step(const Scenario& scenario) {
-    const talus::sim::Model& model = scenario.model();
+    const talus::sim::Model& model = scenario.run().model();
     return model.solver.time_step.value_or(model.largest_time_step());
 }
 
 /// Keeps where the debris is before a step that may reach a time, for talus_get_debris_at().
 void keep_before(talus_simulation& simulation) {
-    const talus::sim::State& state = simulation.scenario->state();
+    const talus::sim::State& state = simulation.scenario->run().state();
     if (!simulation.before) simulation.before.emplace();
     talus::embed::Before& before = *simulation.before;
     before.step = state.step;
@@ -256,7 +256,7 @@ int talus_advance(talus_simulation* simulation, double time, const talus_progres
     });
     if (ready != TALUS_OK) return ready;
     const double start = simulation->scenario->time(),
-                 end = std::min(time, simulation->scenario->model().solver.end_time);
+                 end = std::min(time, simulation->scenario->run().model().solver.end_time);
     return take_steps(
         simulation, progress, error, [&](const Scenario& s) { return (s.time() - start) / (end - start); },
         [&](const Scenario& s) {

@@ -12,6 +12,8 @@
 #include "core/input_file.hpp"
 #include "names.hpp"
 #include "products/text_file.hpp"
+#include "twin/answers.hpp"
+#include "twin/results.hpp"
 
 namespace {
 
@@ -33,21 +35,21 @@ std::int32_t phase_of(const Scenario& scenario) {
 }
 
 Result<json> json_of(const Scenario& scenario, const std::string& name) {
-    if (name == "scene") return scenario.scene_json();
-    if (name == "state") return scenario.state_json();
-    if (name == "verdict") return scenario.verdict_json();
-    if (name == "setup") return scenario.setup_json();
-    if (name == "impacts") return scenario.impacts_json();
-    if (name == "series") return scenario.series_json();
-    if (name == "measures") return scenario.measures_json();
-    if (name == "results") return scenario.results_json();
+    if (name == "scene") return scene_json(scenario);
+    if (name == "state") return state_json(scenario);
+    if (name == "verdict") return verdict_json(scenario);
+    if (name == "setup") return setup_json(scenario);
+    if (name == "impacts") return impacts_json(scenario);
+    if (name == "series") return series_json(scenario);
+    if (name == "measures") return measures_json(scenario);
+    if (name == "results") return results_json(scenario);
     return Error{
         fmt::format("name = \"{}\": must be scene, state, verdict, setup, impacts, series, measures or results", name)};
 }
 
 Answers::Front front_of(const Scenario& scenario) {
     Answers::Front front;
-    for (const talus::observe::FrontSample& sample : scenario.observer().front()) {
+    for (const talus::observe::FrontSample& sample : scenario.run().observer().front()) {
         front.chainage.push_back(sample.chainage);
         front.arrival_time.push_back(sample.arrival_time);
         front.velocity.push_back(sample.front_velocity);
@@ -73,8 +75,8 @@ int talus_get_state(const talus_simulation* simulation, talus_state* state, talu
                            scenario.time(),
                            scenario.step(),
                            {origin.x, origin.y, origin.z},
-                           scenario.model().particle_volume(),
-                           scenario.observer().impacts().size()},
+                           scenario.run().model().particle_volume(),
+                           scenario.run().observer().impacts().size()},
                           state);
         return {};
     });
@@ -84,7 +86,7 @@ int talus_get_hash(const talus_simulation* simulation, uint64_t* hash, talus_err
     return guarded(error, [&]() -> Status {
         TALUS_TRY(need(simulation, "simulation"));
         TALUS_TRY(need(hash, "hash"));
-        *hash = simulation->scenario->hash();
+        *hash = talus::sim::hash_state(simulation->scenario->run().state());
         return {};
     });
 }
@@ -93,7 +95,7 @@ int talus_get_debris(const talus_simulation* simulation, talus_debris* debris, t
     return guarded(error, [&]() -> Status {
         TALUS_TRY(need(simulation, "simulation"));
         TALUS_TRY(check_size(debris, "debris"));
-        const talus::sim::State& state = simulation->scenario->state();
+        const talus::sim::State& state = simulation->scenario->run().state();
         give<talus_debris>({0, state.count, state.position.x.data(), state.position.y.data(), state.position.z.data(),
                             state.velocity.x.data(), state.velocity.y.data(), state.velocity.z.data(), state.id.data(),
                             state.held.data()},
@@ -119,7 +121,7 @@ int talus_get_structure(const talus_simulation* simulation, size_t index, talus_
     return guarded(error, [&]() -> Status {
         TALUS_TRY(need(simulation, "simulation"));
         TALUS_TRY(check_size(structure, "structure"));
-        const std::vector<talus::observe::BuildingImpact>& impacts = simulation->scenario->observer().impacts();
+        const std::vector<talus::observe::BuildingImpact>& impacts = simulation->scenario->run().observer().impacts();
         if (index >= impacts.size()) {
             return Error{fmt::format("index = {}: there are {} structures", index, impacts.size())};
         }
@@ -160,7 +162,7 @@ int talus_write_results(const talus_simulation* simulation, const char* folder, 
         if (fs::exists(there) && !fs::is_empty(path, problem)) return Error{path.string() + ": is not empty"};
         const bool made = fs::create_directories(path, problem);
         if (problem) return Error{fmt::format("{}: cannot be created: {}", path.string(), problem.message())};
-        Status written = simulation->scenario->products()(path);
+        Status written = talus::twin::products_of(*simulation->scenario)(path);
         if (written) talus::embed::tell(TALUS_LOG_INFO, fmt::format("results written into {}", path.string()));
         if (!written) {
             for (const auto& entry : fs::directory_iterator(path, problem)) fs::remove_all(entry, problem);
@@ -178,7 +180,7 @@ int talus_save(const talus_simulation* simulation, const char* file, talus_error
             return Error{"a simulation from arrays can be saved if it was opened with a folder of its own"};
         }
         TALUS_TRY(talus::check_input_file(file));
-        TALUS_TRY(talus::products::replace_text_file(file, simulation->scenario->journal_json().dump()));
+        TALUS_TRY(talus::products::replace_text_file(file, talus::twin::journal_json(*simulation->scenario).dump()));
         talus::embed::tell(TALUS_LOG_INFO, fmt::format("saved in {}", file));
         return {};
     });

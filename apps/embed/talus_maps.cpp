@@ -12,6 +12,7 @@
 
 #include "grid_geometry.hpp"
 #include "names.hpp"
+#include "twin/results.hpp"
 
 namespace {
 
@@ -44,7 +45,7 @@ Result<Layer> layer_named(const std::string& name) {
 
 /// Where there is debris.
 Grid<float> present_speed(const Scenario& scenario) {
-    auto present = scenario.observer().maps().present();
+    auto present = scenario.run().observer().maps().present();
     for (std::size_t k = 0; k < present.speed.values.size(); ++k) {
         if (present.depth.values[k] == 0) present.speed.values[k] = no_value;
     }
@@ -53,7 +54,7 @@ Grid<float> present_speed(const Scenario& scenario) {
 
 Result<Grid<float>> read_layer(const Scenario& scenario, const Layer& layer) {
     if (layer.name == std::string("speed")) return present_speed(scenario);
-    TALUS_ASSIGN(const auto read, scenario.layer(layer.name));
+    TALUS_ASSIGN(const auto read, talus::twin::layer_of(scenario, layer.name));
     return read();
 }
 

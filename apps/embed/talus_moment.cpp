@@ -68,7 +68,7 @@ int talus_get_debris_at(const talus_simulation* simulation, double time, talus_d
         TALUS_TRY(check_size(debris, "debris"));
         if (!std::isfinite(time)) return Error{fmt::format("time = {}: must be a finite number", time)};
         TALUS_TRY(check_time(*simulation, time));
-        const talus::sim::State& state = simulation->scenario->state();
+        const talus::sim::State& state = simulation->scenario->run().state();
         if (time >= state.time) {
             give<talus_debris>({0, state.count, state.position.x.data(), state.position.y.data(),
                                 state.position.z.data(), state.velocity.x.data(), state.velocity.y.data(),

@@ -24,13 +24,13 @@ Buffer<float> flat(const std::vector<LocalPoint>& points) {
 }
 
 Answers::Surface surface_of(const Scenario& scenario) {
-    const auto present = scenario.observer().maps().present();
+    const auto present = scenario.run().observer().maps().present();
     if (present.depth.values.empty()) return {};
     // With a border of a cell, on which the surface comes down to the ground.
     const GridGeometry& g = present.depth.geometry;
     const GridGeometry wider{g.x_min - g.cell, g.y_min - g.cell, g.cell, g.columns + 2, g.rows + 2};
     Grid<float> ground(wider), depth(wider), speed(wider);
-    const talus::terrain::Terrain& terrain = scenario.ground().terrain;
+    const talus::terrain::Terrain& terrain = scenario.run().ground().terrain;
     for (int row = 0; row < wider.rows; ++row) {
         for (int column = 0; column < wider.columns; ++column) {
             const double z = terrain.elevation_at(wider.centre(column, row)) - terrain.frame().origin.z;
@@ -61,7 +61,7 @@ int talus_get_elevation(const talus_simulation* simulation, double x, double y, 
         for (const auto& [name, value] : {std::pair{"x", x}, std::pair{"y", y}}) {
             if (!std::isfinite(value)) return Error{fmt::format("{} = {}: must be a finite number", name, value)};
         }
-        const talus::terrain::Terrain& terrain = simulation->scenario->ground().terrain;
+        const talus::terrain::Terrain& terrain = simulation->scenario->run().ground().terrain;
         const double z = terrain.elevation_at({x, y});
         if (std::isnan(z)) {
             const talus::Extent known = terrain.elevation().geometry.extent();
@@ -85,7 +85,7 @@ int talus_get_elevations(const talus_simulation* simulation, const double* x_y, 
         for (std::size_t i = 0; i < 2 * count; ++i) {
             if (!std::isfinite(x_y[i])) return Error{fmt::format("x_y[{}] = {}: must be a finite number", i, x_y[i])};
         }
-        const talus::terrain::Terrain& terrain = simulation->scenario->ground().terrain;
+        const talus::terrain::Terrain& terrain = simulation->scenario->run().ground().terrain;
         for (std::size_t i = 0; i < count; ++i) elevations[i] = terrain.elevation_at({x_y[2 * i], x_y[2 * i + 1]});
         return {};
     });

@@ -8,6 +8,7 @@
 #include "core/hash.hpp"
 #include "core/try.hpp"
 #include "core/visible_text.hpp"
+#include "twin/live_run.hpp"
 #include "twin/table_entry.hpp"
 
 namespace talus::serve {
@@ -144,7 +145,7 @@ void Alerts::take(const std::string& text, const std::string& source, const Resp
 }
 
 void Alerts::decide(Scenarios& all, Runs& runs, const Job& job, const Answered& answered) {
-    const std::vector<params::TriggerSpec> triggers = all.at(0).triggers();
+    const std::vector<params::TriggerSpec> triggers = twin::triggers_of(all.at(0).run().setup());
     const auto found = std::find_if(triggers.begin(), triggers.end(), [&](const params::TriggerSpec& trigger) {
         return trigger.name == job.message.trigger;
     });

@@ -44,7 +44,7 @@ void layer(Session& session, const DepthAveraged& model, const Request& request,
 
 void comparison(Session& session, const DepthAveraged& model, const Request& request, const Respond& respond) {
     take(session, model, request, respond, [](const twin::Scenario& scenario, Run run) -> std::function<Response()> {
-        return [compared = scenario.compared_with(std::move(run))] { return json_response(200, compared()); };
+        return [compared = twin::comparison_with(scenario, std::move(run))] { return json_response(200, compared()); };
     });
 }
 

@@ -8,6 +8,7 @@
 #include "serve/api.hpp"
 #include "session/json_text.hpp"
 #include "session/thinned.hpp"
+#include "twin/answers.hpp"
 #include "twin/json_keys.hpp"
 
 namespace talus::serve {
@@ -129,7 +130,7 @@ void add_session_routes(Router& router, Session& session) {
                 }});
     router.add({"GET", "/api/scene", Role::viewer, [&session](const Request&, const Respond& respond) {
                     session.loop().post(
-                        [respond](Scenarios& all) { respond(json_response(200, all.at(0).scene_json())); });
+                        [respond](Scenarios& all) { respond(json_response(200, twin::scene_json(all.at(0)))); });
                 }});
     add_terrain(router, session);
     add_orthophoto(router, session);

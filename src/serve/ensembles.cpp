@@ -8,7 +8,7 @@
 
 #include "core/try.hpp"
 #include "geo/raster.hpp"
-#include "twin/scenario.hpp"
+#include "twin/frame.hpp"
 
 namespace talus::serve {
 namespace {

@@ -16,6 +16,8 @@
 #include "serve/api.hpp"
 #include "serve/library.hpp"
 #include "session/json_text.hpp"
+#include "twin/live_run.hpp"
+#include "twin/results.hpp"
 #include "twin/scene_copy.hpp"
 
 namespace talus::serve {
@@ -89,7 +91,7 @@ std::string why_none(const ExportFile& file, const twin::Scenario& run, const ru
         case Needs::nothing:
             return "";
         case Needs::erosion:
-            return run.has_erosion() ? "" : "nothing was entrained";
+            return run.run().summary().entrained > 0 ? "" : "nothing was entrained";
         case Needs::gauges:
             return run.scene().gauges.empty() ? "the scene has no gauges" : "";
         case Needs::source:
@@ -139,7 +141,7 @@ Status write_copy(const twin::SceneCopy& copy, const geo::Crs& crs, const fs::pa
 
 /// A run at the time of a request for files, and their folder. Once created, used by the writer's thread only.
 struct Exports::Snapshot {
-    std::uint64_t step = 0, revision = 0, hash = 0;
+    twin::Version version;
     fs::path folder;
     std::function<Status(const fs::path&)> products;  // none: they are written
 
@@ -173,8 +175,7 @@ void Exports::close() {
 
 bool Exports::is_current(int index, const twin::Scenario& scenario) const {
     const SnapshotPtr& taken = taken_[static_cast<std::size_t>(index)];
-    return taken && taken->step == scenario.step() && taken->revision == scenario.revision() &&
-           taken->hash == scenario.hash();
+    return taken && taken->version == twin::version_of(scenario);
 }
 
 void Exports::list(const std::string& scenario, const Respond& respond) {
@@ -224,12 +225,10 @@ void Exports::file(const std::string& scenario, const std::string& name, const R
         if (wanted->needs == Needs::source) return scene_archive(run, respond);
         if (!is_current(*index, run)) {
             auto fresh = std::make_shared<Snapshot>();
-            fresh->step = run.step();
-            fresh->revision = run.revision();
-            fresh->hash = run.hash();
+            fresh->version = twin::version_of(run);
             // A new name each time: the previous one may still be in use.
             fresh->folder = folder_ / fmt::format("{}{}", Scenarios::name_of(*index), ++count_);
-            fresh->products = run.products();
+            fresh->products = twin::products_of(run);
             std::swap(taken, fresh);
             writer_->post([former = std::move(fresh)] {});  // this removes its files
         }
@@ -243,7 +242,7 @@ void Exports::file(const std::string& scenario, const std::string& name, const R
 
 void Exports::scene_archive(const twin::Scenario& scenario, const Respond& respond) {
     const fs::path folder = folder_ / fmt::format("scene{}", ++count_);
-    writer_->post([this, folder, source = source_, copy = scenario.copy_of_scene(), respond] {
+    writer_->post([this, folder, source = source_, copy = twin::scene_copy_of(scenario), respond] {
         const ExportFile& wanted = *find_file(scene_zip);
         const auto made = [&]() -> Result<Response> {
             // It is written into another folder: its files need whole paths.

@@ -84,7 +84,7 @@ void FlowExports::offer(const std::string& scenario, std::optional<double> inter
     session_.loop().post([this, scenario, interval, respond](Scenarios& all) {
         const auto index = all.find(scenario);
         if (!index) return respond(no_scenario(scenario));
-        session_.worker().post([scenario, interval, respond, flow = all.at(*index).flow()] {
+        session_.worker().post([scenario, interval, respond, flow = twin::recorded_flow_of(all.at(*index))] {
             json offered = flow->describe(interval.value_or(flow->default_interval()));
             offered["scenario"] = scenario;
             respond(json_response(200, offered));
@@ -113,7 +113,7 @@ void FlowExports::start(const std::string& scenario, const std::string& body, co
     if (!wanted) return respond(error_response(400, wanted.error().message));
     session_.loop().post([this, scenario, wanted = std::move(*wanted), respond](Scenarios& all) {
         const auto index = all.find(scenario);
-        respond(index ? begin(scenario, all.at(*index).flow(), wanted) : no_scenario(scenario));
+        respond(index ? begin(scenario, twin::recorded_flow_of(all.at(*index)), wanted) : no_scenario(scenario));
     });
 }
 

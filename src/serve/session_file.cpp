@@ -9,6 +9,7 @@
 #include "run/threads.hpp"
 #include "serve/library.hpp"
 #include "session/json_text.hpp"
+#include "twin/answers.hpp"
 #include "twin/json_keys.hpp"
 
 namespace talus::serve {
@@ -46,7 +47,7 @@ json write_session(Scenarios& all, const std::string& name, const std::string& t
         const int index = *all.find(letter);
         scenarios.push_back({{"name", letter},
                              {"title", all.setup(index).value("name", "")},
-                             {"journal", all.at(index).journal_json()}});
+                             {"journal", twin::journal_json(all.at(index))}});
     }
     json session{{"talus_session", session_version},
                  {"name", name},

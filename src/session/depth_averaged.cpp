@@ -50,9 +50,10 @@ std::vector<int> DepthAveragedResults::look(Scenarios& all) {
             continue;
         }
         const twin::Scenario& scenario = all.at(i);
-        std::string key = scenario.setup_key();
+        std::string key = twin::setup_key(scenario);
         if (slot(i).state != State::off && slot(i).key == key) continue;
-        slot(i) = {State::waiting, std::move(key), ++asked_, scenario.for_depth_averaged(limits_), {}, 0, {}};
+        slot(i) = {
+            State::waiting, std::move(key), ++asked_, twin::scene_for_depth_averaged(scenario, limits_), {}, 0, {}};
         changed.push_back(i);
     }
     return changed;

@@ -6,6 +6,8 @@
 
 #include "core/number_or_null.hpp"
 #include "ensemble/predict.hpp"
+#include "twin/answers.hpp"
+#include "twin/results.hpp"
 #include "twin/table_entry.hpp"
 
 namespace talus::session {
@@ -47,8 +49,8 @@ json observed_json(const scene::Scene& scene, const run::RunResult& result, cons
 
 Rest observed(Scenarios& all, int index, const Arguments& /*arguments*/) {
     const twin::Scenario& scenario = all.at(index);
-    return [outcome = scenario.outcome(), entries = scenario.setup_json()["observations"]] {
-        const auto [scene, result] = outcome();
+    return [outcome = twin::outcome_of(scenario), entries = twin::setup_json(scenario)["observations"]] {
+        const auto& [scene, result] = outcome;
         return reply(observed_json(scene, result, entries));
     };
 }

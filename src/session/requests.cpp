@@ -9,7 +9,10 @@
 #include "core/try.hpp"
 #include "session/json_text.hpp"
 #include "session/observed.hpp"
+#include "twin/answers.hpp"
 #include "twin/json_keys.hpp"
+#include "twin/live_run.hpp"
+#include "twin/results.hpp"
 
 namespace talus::session {
 namespace {
@@ -30,7 +33,7 @@ Rest refused(Outcome outcome, const Error& why) {
 Rest frame(Scenarios& all, int index, const Arguments& arguments) {
     const auto time = number_of(arguments, "time_s", 0, latest);
     if (!time) return refused(Outcome::wrong, time.error());
-    const twin::FramePtr frame = *time ? all.at(index).recorded_frame(**time) : all.frame(index, 1);
+    const twin::FramePtr frame = *time ? all.at(index).run().recording().at(**time) : all.frame(index, 1);
     if (!frame) {
         return refused(Outcome::unknown, Error{fmt::format("nothing is recorded at or before time_s = {}", **time)});
     }
@@ -43,34 +46,37 @@ Rest probe(Scenarios& all, int index, const Arguments& arguments) {
                y = number_of(arguments, "y_m", -farthest, farthest);
     if (!x || !y) return refused(Outcome::wrong, x ? y.error() : x.error());
     if (!*x || !*y) return refused(Outcome::wrong, Error{"the query needs x_m and y_m"});
-    return [probe = all.at(index).probe({**x, **y})] { return reply(probe()); };
+    return [probe = twin::probe_at(all.at(index), {**x, **y})] { return reply(probe()); };
 }
 
 Rest layer(Scenarios& all, int index, const Arguments& arguments) {
     const auto time = number_of(arguments, "time_s", 0, latest);
     if (!time) return refused(Outcome::wrong, time.error());
-    auto grid = all.at(index).layer(arguments.at("name"), *time);
+    auto grid = twin::layer_of(all.at(index), arguments.at("name"), *time);
     if (!grid) return refused(Outcome::unknown, grid.error());
     return [grid = std::move(*grid)] { return binary(twin::encode_grid(grid())); };
 }
 
 Rest figures(Scenarios& all, int index, const Arguments&) {
-    return [figures = all.at(index).figures()] { return reply(figures()); };
+    return [figures = twin::figures_of(all.at(index))] { return reply(figures()); };
 }
 
 /// What a scenario answers at once.
-Question plain(const char* name, json (*answer)(Scenarios&, int index)) {
-    return {name, {}, false, [answer](Scenarios& all, int index, const Arguments&) -> Rest {
+Question plain(const char* name, std::function<json(Scenarios&, int index)> answer) {
+    return {name, {}, false, [answer = std::move(answer)](Scenarios& all, int index, const Arguments&) -> Rest {
                 return [made = reply(answer(all, index))] { return made; };
             }};
 }
+Question plain(const char* name, json (*answer)(const twin::Scenario&)) {
+    return plain(name, [answer](Scenarios& all, int index) { return answer(all.at(index)); });
+}
 
 /// A table of a scenario, now or as of `time_s`.
-Question table(const char* name, json (twin::Scenario::*answer)(std::optional<double> time) const) {
+Question table(const char* name, json (*answer)(const twin::Scenario&, std::optional<double> time)) {
     return {name, {"time_s"}, false, [answer](Scenarios& all, int index, const Arguments& arguments) -> Rest {
                 const auto time = number_of(arguments, "time_s", 0, latest);
                 if (!time) return refused(Outcome::wrong, time.error());
-                return [made = reply((all.at(index).*answer)(*time))] { return made; };
+                return [made = reply(answer(all.at(index), *time))] { return made; };
             }};
 }
 
@@ -111,13 +117,15 @@ Result<std::optional<double>> number_of(const Arguments& arguments, const std::s
 
 const std::vector<Question>& questions() {
     static const std::vector<Question> known{
-        plain("state", [](Scenarios& all, int index) { return all.state(index); }),
-        plain("setup", [](Scenarios& all, int index) { return all.setup(index); }),
-        plain("series", [](Scenarios& all, int index) { return all.at(index).series_json(); }),
-        plain("journal", [](Scenarios& all, int index) { return all.at(index).journal_json(); }),
-        plain("recording", [](Scenarios& all, int index) { return all.at(index).recording_json(); }),
-        table("impacts", &twin::Scenario::impacts_json),
-        table("gauges", &twin::Scenario::gauges_json),
+        plain("state", &Scenarios::state),  // with what the session knows
+        plain("setup", &Scenarios::setup),
+        // From the scenario itself.
+        plain("series", twin::series_json),
+        plain("journal", twin::journal_json),
+        plain("recording", twin::recording_json),
+        table("impacts", twin::impacts_json),
+        table("gauges", twin::gauges_json),
+        // With work for another thread.
         {"frame", {"time_s"}, true, frame},
         {"probe", {"x_m", "y_m"}, true, probe},
         {"figures", {}, true, figures},

@@ -5,6 +5,10 @@
 #include <optional>
 #include <utility>
 
+#include "twin/answers.hpp"
+#include "twin/live_run.hpp"
+#include "twin/trigger.hpp"
+
 namespace talus::session {
 namespace {
 
@@ -88,7 +92,7 @@ Scenarios::Slot* Scenarios::furthest_behind(const Slots& slots) {
 json Scenarios::state(int index) const {
     const Slot& slot = slots_[static_cast<std::size_t>(index)];
     const bool steps = slot.steps();
-    json state = slot.scenario->state_json(!steps);
+    json state = twin::state_json(*slot.scenario, !steps);
     state["scenario"] = name_of(index);
     state["speed_factor"] = pace_.factor() ? json(*pace_.factor()) : json();
     state["real_time_factor"] = steps ? slot.rate.real_time_factor() : 0.0;
@@ -99,7 +103,7 @@ json Scenarios::state(int index) const {
 }
 
 json Scenarios::setup(int index) const {
-    json setup = slots_[static_cast<std::size_t>(index)].scenario->setup_json();
+    json setup = twin::setup_json(*slots_[static_cast<std::size_t>(index)].scenario);
     setup["scenario"] = name_of(index);
     setup["name"] = slots_[static_cast<std::size_t>(index)].title;
     return setup;
@@ -107,7 +111,7 @@ json Scenarios::setup(int index) const {
 
 twin::FramePtr Scenarios::frame(int index, unsigned stride) const {
     const Slot& slot = slots_[static_cast<std::size_t>(index)];
-    return slot.scenario->frame(stride, slot.steps() ? twin::frame_running : 0);
+    return slot.scenario->run().frame(stride, slot.steps() ? twin::frame_running : 0);
 }
 
 void Scenarios::set_audience(const std::vector<Audience>& audience) {
@@ -127,8 +131,8 @@ void Scenarios::tell_names() {
 /// Of a run that was started again, the alarms of the run before are forgotten.
 void Scenarios::tell_alerts(int index) {
     Slot& slot = slots_[static_cast<std::size_t>(index)];
-    const json* trigger = slot.scenario->trigger();
-    const std::vector<twin::RaisedAlarm>& alarms = slot.scenario->alarms();
+    const json* trigger = twin::started_by(*slot.scenario);
+    const std::vector<twin::RaisedAlarm>& alarms = slot.scenario->run().alarms();
     if (slot.told_trigger == (trigger != nullptr) && slot.told_alarms == alarms.size()) return;
     const std::size_t known = alarms.size() < slot.told_alarms ? 0 : slot.told_alarms;
     slot.told_trigger = trigger != nullptr;

@@ -14,6 +14,8 @@
 
 #include "core/result.hpp"
 #include "session/pace.hpp"
+#include "twin/alarms.hpp"
+#include "twin/frame.hpp"
 #include "twin/scenario.hpp"
 
 namespace talus::session {

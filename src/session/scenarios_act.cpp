@@ -9,6 +9,8 @@
 #include "session/json_text.hpp"
 #include "session/scenarios.hpp"
 #include "twin/json_keys.hpp"
+#include "twin/live_run.hpp"
+#include "twin/trigger.hpp"
 
 // What people do with scenarios.
 
@@ -223,7 +225,7 @@ void Scenarios::act(int index, const json& action, const std::string& by, const 
 void Scenarios::copy(int from, const json& action, const std::string& by, const Answer<Copied>& answer) {
     const auto free_slot = [this] {
         const auto people = std::count_if(slots_.begin(), slots_.end(), [](const Slot& slot) {
-            return slot.scenario && slot.scenario->trigger() == nullptr;
+            return slot.scenario && twin::started_by(*slot.scenario) == nullptr;
         });
         if (people >= max_count - reserved_) return slots_.end();
         return std::find_if(slots_.begin(), slots_.end(), [](const Slot& slot) { return !slot.scenario; });
@@ -265,7 +267,7 @@ void Scenarios::copy(int from, const json& action, const std::string& by, const 
 std::optional<int> Scenarios::run_of(const std::string& trigger) const {
     for (int i = 0; i < max_count; ++i) {
         const Slot& slot = slots_[static_cast<std::size_t>(i)];
-        const json* started = slot.scenario ? slot.scenario->trigger() : nullptr;
+        const json* started = slot.scenario ? twin::started_by(*slot.scenario) : nullptr;
         if (started != nullptr && slot.ready() && (*started)["trigger"] == trigger) return i;
     }
     return {};
@@ -276,7 +278,7 @@ Scenarios::Slot* Scenarios::place_for(const std::string& trigger) {
     Slot* place = nullptr;
     int best = 0;
     for (Slot& slot : slots_) {
-        const json* started = slot.scenario ? slot.scenario->trigger() : nullptr;
+        const json* started = slot.scenario ? twin::started_by(*slot.scenario) : nullptr;
         const bool over = started != nullptr && !slot.ready() && !slot.job;
         const int fits = over && (*started)["trigger"] == trigger ? 3 : !slot.scenario ? 2 : over ? 1 : 0;
         if (fits <= best) continue;
@@ -335,9 +337,10 @@ void Scenarios::put(int index, std::unique_ptr<twin::Scenario> scenario, const s
     slot = Slot();
     slot.scenario = std::move(scenario);
     slot.title = title;
-    slot.told_alarms = slot.scenario->alarms().size();  // of a saved session: nobody is warned of them again
-    slot.told_trigger = slot.scenario->trigger() != nullptr;
-    watcher_.alerts(index, {slot.told_trigger ? *slot.scenario->trigger() : json(), slot.scenario->alarms(), 0});
+    slot.told_alarms = slot.scenario->run().alarms().size();  // of a saved session: nobody is warned of them again
+    slot.told_trigger = twin::started_by(*slot.scenario) != nullptr;
+    watcher_.alerts(index,
+                    {slot.told_trigger ? *twin::started_by(*slot.scenario) : json(), slot.scenario->run().alarms(), 0});
     tell_names();
     start_clock();
 }

@@ -114,7 +114,7 @@ Reply Session::depth_averaged(const std::string& scenario, const std::string& qu
     if (!time) return refusal(Outcome::wrong, time.error().message);
     const DepthAveragedResults::Run run = results.result(*index);
     if (!run) return refusal(Outcome::unknown, results.why_none(*index));
-    if (question == "comparison") return reply(scenarios_->at(*index).compared_with(run)());
+    if (question == "comparison") return reply(twin::comparison_with(scenarios_->at(*index), run)());
     constexpr std::string_view layers = "layers/";
     const auto grid = run->layer(question.substr(std::min(layers.size(), question.size())), *time);
     if (!grid) return refusal(Outcome::unknown, grid.error().message);
@@ -124,7 +124,7 @@ Reply Session::depth_averaged(const std::string& scenario, const std::string& qu
 std::optional<std::vector<twin::RunFile>> Session::files(const std::string& scenario) const {
     const auto index = scenarios_->find(scenario);
     if (!index) return {};
-    return scenarios_->at(*index).page_files();
+    return twin::page_files_of(scenarios_->at(*index));
 }
 
 std::optional<Clock::time_point> Session::advance(const Now& now, Clock::duration budget) {

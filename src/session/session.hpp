@@ -18,6 +18,8 @@
 #include "session/requests.hpp"
 #include "session/room.hpp"
 #include "session/scenarios.hpp"
+#include "twin/answers.hpp"
+#include "twin/results.hpp"
 
 namespace talus::session {
 
@@ -50,16 +52,16 @@ class Session final : private Watcher {
     [[nodiscard]] Reply end(const std::string& id, const std::string& scenario);
     /// `question`: the name of one of questions().
     [[nodiscard]] Reply ask(const std::string& scenario, const std::string& question, const Arguments& arguments = {});
-    /// As twin::Scenario::page_files; nothing: there is no such scenario.
+    /// As twin::page_files_of; nothing: there is no such scenario.
     [[nodiscard]] std::optional<std::vector<twin::RunFile>> files(const std::string& scenario) const;
     /// `{"on": true}`: the depth-averaged model beside the runs.
     [[nodiscard]] Reply turn_depth_averaged(const std::string& id, const nlohmann::json& wanted);
     /// `question`: empty for its status, "comparison", or "layers/" and a name; a layer may have a time.
     [[nodiscard]] Reply depth_averaged(const std::string& scenario, const std::string& question,
                                        const Arguments& arguments = {});
-    [[nodiscard]] Reply scene() const { return reply(scenarios_->at(0).scene_json()); }
+    [[nodiscard]] Reply scene() const { return reply(twin::scene_json(scenarios_->at(0))); }
     /// Of the first scenario's state now, as in its journal.
-    [[nodiscard]] std::string hash() const { return to_hex(scenarios_->at(0).hash()); }
+    [[nodiscard]] std::string hash() const { return to_hex(twin::version_of(scenarios_->at(0)).hash); }
     /// As `GET /api/session`.
     [[nodiscard]] nlohmann::json describe(Role role) const { return room_->describe(role); }
 

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "twin/scenario.hpp"
+#include "twin/frame.hpp"
 
 namespace talus::session {
 namespace {

@@ -19,6 +19,8 @@
 /// hash.
 namespace talus::twin {
 
+class Scenario;
+
 /// What a run of it may cost beside a live run.
 struct DepthAveragedLimits {
     double most_cells = 4e6;               ///< of its grid; a scene that has more gets coarser cells
@@ -79,5 +81,16 @@ class DepthAveragedSteps {
 [[nodiscard]] Result<DepthAveragedRun> run_depth_averaged(const scene::Scene& scene, const std::atomic<bool>& stop,
                                                           const std::function<void(double share)>& progress = {},
                                                           const DepthAveragedLimits& limits = {});
+
+// Beside a scenario. The work is for any thread, while the scenario continues.
+
+/// Its present setup as a text: setups of one scene are the same to this model if their texts are.
+[[nodiscard]] std::string setup_key(const Scenario& scenario);
+/// Makes the scene of its present setup, from time 0, for this model. Errors: as for_depth_averaged().
+[[nodiscard]] std::function<Result<scene::Scene>()> scene_for_depth_averaged(const Scenario& scenario,
+                                                                             const DepthAveragedLimits& limits = {});
+/// `{"time_s", "over", "rows", ...}` of docs/protocol.md: its run so far beside this one.
+[[nodiscard]] std::function<nlohmann::json()> comparison_with(const Scenario& scenario,
+                                                              std::shared_ptr<const DepthAveragedRun> other);
 
 }  // namespace talus::twin

@@ -7,9 +7,7 @@
 #include <zlib.h>
 
 #include "core/byte_planes.hpp"
-#include "core/grid.hpp"
 #include "twin/pore_pressure_map.hpp"
-#include "twin/scenario.hpp"
 
 namespace talus::twin {
 namespace {

@@ -7,10 +7,14 @@
 #include <string>
 #include <vector>
 
+#include "core/grid.hpp"
 #include "observe/map_accumulator.hpp"
 #include "sim/state.hpp"
 
 namespace talus::twin {
+
+/// Bits of a frame's `flags`.
+inline constexpr unsigned frame_running = 1, frame_too_compressed = 2, frame_recorded = 4;
 
 /// The debris at one moment, in whole numbers: a frame of docs/protocol.md, before compression.
 struct Frame {
@@ -57,5 +61,12 @@ struct DebrisAt {
 
 /// The same for all cells of the window, by rows.
 [[nodiscard]] std::vector<DebrisAt> debris_in_window(const Frame& frame);
+
+/// How a grid message holds its values: as they are, or as differences (core/byte_planes.hpp), which takes half the
+/// bytes where a raster is smooth as terrain is.
+enum class GridCoding : std::uint8_t { values, differences };
+
+/// Encodes a grid message.
+[[nodiscard]] std::string encode_grid(const Grid<float>& grid, GridCoding coding = GridCoding::values);
 
 }  // namespace talus::twin

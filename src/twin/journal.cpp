@@ -1,6 +1,7 @@
 #include "twin/journal.hpp"
 
 #include <algorithm>
+#include <filesystem>
 #include <initializer_list>
 #include <string_view>
 #include <utility>
@@ -12,7 +13,7 @@
 #include "geo/json_text.hpp"
 #include "twin/json_keys.hpp"
 #include "twin/kinds.hpp"
-#include "twin/scenario.hpp"
+#include "twin/scenario_parts.hpp"
 
 namespace talus::twin {
 namespace {
@@ -154,6 +155,22 @@ Result<Journal> read_journal(const std::string& text) {
     return journal;
 }
 
+Journal journal_of(const Scenario& scenario) {
+    const Scenario::Parts& p = scenario.parts();
+    std::string file = p.scene->file.string();
+    if (!file.starts_with("built-in:")) file = std::filesystem::absolute(p.scene->file).lexically_normal().string();
+    return {file,
+            p.options.overrides,
+            p.scene->inputs,
+            p.first_setup,
+            p.first_next,
+            p.entries,
+            scenario.step(),
+            scenario.time(),
+            to_hex(hash_state(p.run->state())),
+            p.run->instruction_set()};
+}
+
 std::vector<std::string> changed_inputs(const Journal& journal, const scene::Scene& scene) {
     std::vector<std::string> sentences;
     for (const scene::InputFile& then : journal.inputs) {
@@ -193,7 +210,7 @@ Result<Replayed> replay(const Journal& journal, std::shared_ptr<const scene::Sce
         if (Status s = scenario.follow(entry); !s) return Error{fmt::format("actions[{}]: {}", k, s.error().message)};
     }
     if (Status s = go_to(journal.steps); !s) return Error{"last." + s.error().message};
-    return Replayed{scenario.step(), scenario.time(), to_hex(scenario.hash()), std::move(opened)};
+    return Replayed{scenario.step(), scenario.time(), to_hex(hash_state(scenario.run().state())), std::move(opened)};
 }
 
 }  // namespace talus::twin

@@ -38,6 +38,9 @@ struct Journal {
     std::string instruction_set;
 };
 
+/// Of a scenario so far.
+[[nodiscard]] Journal journal_of(const Scenario& scenario);
+
 [[nodiscard]] nlohmann::json write_journal(const Journal& journal);
 
 /// Errors name key and value.

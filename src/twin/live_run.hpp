@@ -21,6 +21,9 @@
 
 namespace talus::twin {
 
+/// More are refused in a change of a live run: a scenario file decides for itself.
+inline constexpr int max_live_particles = 1'000'000;
+
 /// The run of a setup, from time 0, with its recording; between two steps it can be changed to another setup.
 class LiveRun {
   public:
@@ -75,6 +78,8 @@ class LiveRun {
     /// What is known about the step that cannot be trusted, at fault.
     [[nodiscard]] const std::optional<run::FaultRecord>& fault() const { return run_->fault(); }
     [[nodiscard]] std::string instruction_set() const { return run_->simulation().instruction_set(); }
+    /// The current frame. `stride` >= 1: every stride-th particle. `flags`: frame_running; the frame adds
+    /// frame_too_compressed itself.
     [[nodiscard]] FramePtr frame(unsigned stride, unsigned flags) const;
 
     /// Impact on an obstacle of the setup, until now or until a time of the recording.

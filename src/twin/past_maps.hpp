@@ -11,7 +11,7 @@ namespace talus::twin {
 
 inline constexpr std::string_view pore_pressure_layer = "pore_pressure_ratio";
 
-/// The names of the layers of Scenario::layer.
+/// The names of the layers of layer_of().
 [[nodiscard]] std::vector<std::string_view> run_layers();
 
 /// Properties of the current map that past ones share: the cells, and the least depth that counts as debris.
@@ -21,7 +21,7 @@ struct MapFrame {
     Grid<float> arrival_now;  ///< s, of the present; NaN: never
 };
 
-/// A layer of Scenario::layer as it was when the last of `frames` was recorded. Arrival times are exact. Peaks are the
+/// A layer of layer_of() as it was when the last of `frames` was recorded. Arrival times are exact. Peaks are the
 /// greatest of the recorded frames: higher values between two frames are missed, so they are lower bounds.
 [[nodiscard]] Grid<float> past_layer(const std::string& name, const std::vector<FramePtr>& frames, const MapFrame& map);
 

@@ -13,6 +13,8 @@
 #include "products/debris_surface.hpp"
 #include "products/series.hpp"
 #include "run/run_scene.hpp"
+#include "twin/results.hpp"
+#include "twin/scenario_parts.hpp"
 
 namespace talus::twin {
 namespace {
@@ -199,6 +201,17 @@ Status RecordedFlow::write(const std::vector<std::string>& names, double interva
     if (ended) return Error{"the export was cancelled"};
     if (!missing.empty()) return Error{fmt::format("{}", fmt::join(missing, "; "))};
     return {};
+}
+
+std::shared_ptr<const RecordedFlow> recorded_flow_of(const Scenario& scenario) {
+    const LiveRun& run = scenario.run();
+    std::vector<FramePtr> frames = run.recording().frames();
+    // Between two frames of the recording, or at its end.
+    if (frames.empty() || frames.back()->time < run.summary().time) frames.push_back(run.frame(1, 0));
+    auto [scene, result] = outcome_of(scenario);
+    const observe::MapAccumulator& maps = run.observer().maps();
+    return std::make_shared<const RecordedFlow>(std::move(scene), std::move(result), std::move(frames), maps.geometry(),
+                                                maps.thinnest_depth(), scenario.parts().options.frame_interval);
 }
 
 }  // namespace talus::twin

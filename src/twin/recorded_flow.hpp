@@ -2,6 +2,7 @@
 
 #include <filesystem>
 #include <functional>
+#include <memory>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -15,6 +16,8 @@
 #include "twin/frame.hpp"
 
 namespace talus::twin {
+
+class Scenario;
 
 /// The moving flow of a run so far, from its recording: debris as it was seen, with every change of the setup. Written
 /// by products::Series, in those of its formats that need no velocity of each particle. For any thread, while the run
@@ -59,5 +62,8 @@ class RecordedFlow {
     GridGeometry map_;
     double thinnest_depth_, recorded_interval_;
 };
+
+/// Of the run so far. It copies the results.
+[[nodiscard]] std::shared_ptr<const RecordedFlow> recorded_flow_of(const Scenario& scenario);
 
 }  // namespace talus::twin

@@ -7,7 +7,6 @@
 
 #include <fmt/format.h>
 
-#include "core/hash.hpp"
 #include "core/try.hpp"
 #include "products/fault_files.hpp"
 #include "products/text_file.hpp"
@@ -54,20 +53,6 @@ Result<std::filesystem::path> keep_fault(const run::FaultRecord& record, const j
 
 }  // namespace
 
-std::string_view phase_name(run::RunPhase phase) {
-    switch (phase) {
-        case run::RunPhase::ready:
-            return "ready";
-        case run::RunPhase::at_rest:
-            return "at_rest";
-        case run::RunPhase::ended:
-            return "ended";
-        case run::RunPhase::fault:
-            return "fault";
-    }
-    return "";
-}
-
 Result<std::unique_ptr<LiveRun>> Scenario::Parts::run_of(const Setup& setup, const sim::Progress& progress) const {
     auto started = LiveRun::start(*scene, setup, particle_spacing, options, progress);
     if (!started) return Error{scene->file.string() + ": " + started.error().message};
@@ -112,16 +97,16 @@ Scenario::Parts::Parts(std::shared_ptr<const scene::Scene> its_scene, ScenarioOp
     particle_spacing = scene::particle_spacing(*scene);
 }
 
-Result<std::unique_ptr<Scenario>> Scenario::open(std::shared_ptr<const scene::Scene> scene, ScenarioOptions options,
-                                                 const sim::Progress& progress) {
+Scenario::Opened Scenario::open(std::shared_ptr<const scene::Scene> scene, ScenarioOptions options,
+                                const sim::Progress& progress) {
     auto parts = std::make_unique<Parts>(std::move(scene), std::move(options));
     const Setup setup = setup_of(*parts->scene, parts->next);
     TALUS_TRY(parts->start(setup, progress));
     return std::unique_ptr<Scenario>(new Scenario(std::move(parts)));
 }
 
-Result<std::unique_ptr<Scenario>> Scenario::open_at(const Journal& journal, std::shared_ptr<const scene::Scene> scene,
-                                                    ScenarioOptions options) {
+Scenario::Opened Scenario::open_at(const Journal& journal, std::shared_ptr<const scene::Scene> scene,
+                                   ScenarioOptions options) {
     auto setup = read_setup(journal.first_setup, *scene);
     if (!setup) return Error{"first_setup: " + setup.error().message};
     auto parts = std::make_unique<Parts>(std::move(scene), std::move(options));
@@ -142,27 +127,25 @@ std::unique_ptr<Scenario> Scenario::fork() const {
     return std::unique_ptr<Scenario>(new Scenario(std::make_unique<Parts>(*parts_)));
 }
 
-std::function<Result<std::unique_ptr<Scenario>>(const sim::Progress&)> Scenario::copying() const {
+Scenario::Opening Scenario::copying() const {
     auto parts = std::make_shared<std::unique_ptr<Parts>>(std::make_unique<Parts>(parts_->scene, parts_->options));
     (*parts)->next = parts_->next;
     (*parts)->undo = held_again(parts_->undo);
     (*parts)->redo = held_again(parts_->redo);
-    return [parts, setup = held_again(parts_->setup())](const sim::Progress& progress) {
-        const Status started = (*parts)->start(setup, progress);
-        using Made = Result<std::unique_ptr<Scenario>>;
-        return started ? Made(std::unique_ptr<Scenario>(new Scenario(std::move(*parts)))) : Made(started.error());
+    return [parts, setup = held_again(parts_->setup())](const sim::Progress& progress) -> Opened {
+        TALUS_TRY((*parts)->start(setup, progress));
+        return std::unique_ptr<Scenario>(new Scenario(std::move(*parts)));
     };
 }
 
-std::function<Result<std::unique_ptr<Scenario>>(const sim::Progress&)> Scenario::opening() const {
+Scenario::Opening Scenario::opening() const {
     return [scene = parts_->scene, options = parts_->options, now = parts_->setup(),
-            numbers = parts_->next](const sim::Progress& progress) {
-        using Made = Result<std::unique_ptr<Scenario>>;
+            numbers = parts_->next](const sim::Progress& progress) -> Opened {
         auto parts = std::make_unique<Parts>(scene, options);
         Setup setup = setup_of(*scene, parts->next);
         take_tables(setup, parts->next, now, numbers);
-        const Status started = parts->start(setup, progress);
-        return started ? Made(std::unique_ptr<Scenario>(new Scenario(std::move(parts)))) : Made(started.error());
+        TALUS_TRY(parts->start(setup, progress));
+        return std::unique_ptr<Scenario>(new Scenario(std::move(parts)));
     };
 }
 
@@ -177,7 +160,7 @@ void Scenario::advance() {
     p.fault_note = record.sentence;
     if (!last.is_null()) p.fault_note += fmt::format("; the last action was {}", last["action"].get<std::string>());
     if (p.options.fault_folder.empty()) return;
-    const auto kept = keep_fault(record, journal_json(), p.options.fault_folder);
+    const auto kept = keep_fault(record, write_journal(journal_of(*this)), p.options.fault_folder);
     p.fault_note += kept ? fmt::format("; journal and last good state are in {}", kept->string())
                          : "; nothing is kept of it: " + kept.error().message;
 }
@@ -334,49 +317,11 @@ double Scenario::time() const {
 std::uint64_t Scenario::step() const {
     return parts_->run->summary().step;
 }
-std::uint64_t Scenario::hash() const {
-    return hash_state(parts_->run->state());
-}
-std::uint64_t Scenario::revision() const {
-    return parts_->revision;
-}
 const scene::Scene& Scenario::scene() const {
     return *parts_->scene;
 }
-const sim::Model& Scenario::model() const {
-    return parts_->run->model();
-}
-const sim::Ground& Scenario::ground() const {
-    return parts_->run->ground();
-}
-const sim::State& Scenario::state() const {
-    return parts_->run->state();
-}
-const observe::Observer& Scenario::observer() const {
-    return parts_->run->observer();
-}
-
-std::vector<params::TriggerSpec> Scenario::triggers() const {
-    return triggers_of(parts_->setup());
-}
-
-const std::vector<RaisedAlarm>& Scenario::alarms() const {
-    return parts_->run->alarms();
-}
-
-const json* Scenario::trigger() const {
-    const auto& entries = parts_->entries;
-    const auto found = std::find_if(entries.begin(), entries.end(),
-                                    [](const JournalEntry& entry) { return entry.action["action"] == "trigger"; });
-    return found == entries.end() ? nullptr : &found->action;
-}
-
-FramePtr Scenario::frame(unsigned stride, unsigned flags) const {
-    return parts_->run->frame(stride, flags);
-}
-
-FramePtr Scenario::recorded_frame(double time) const {
-    return parts_->run->recording().at(time);
+const LiveRun& Scenario::run() const {
+    return *parts_->run;
 }
 
 }  // namespace talus::twin

@@ -29,7 +29,7 @@ struct Scenario::Prepared {
     std::optional<GaugeReading> gauge;  ///< in place of both
 };
 
-/// Shared by scenario*.cpp.
+/// What a scenario consists of.
 struct Scenario::Parts {
     /// A setup that can be restored, and the change from or to it.
     struct Past {
@@ -76,10 +76,6 @@ struct Scenario::Parts {
     /// Also in the setups that can be undone to: what a gauge has measured is not undone.
     void follow_gauge(const GaugeReading& reading);
     void keep_past(Prepared& prepared);
-    /// What was changed during the run, so that its files are the result of no single setup; empty: nothing.
-    [[nodiscard]] std::string changed_text() const;
-    /// The scene with the present setup, and the result of the run so far.
-    [[nodiscard]] std::pair<scene::Scene, run::RunResult> outcome() const;
     void note_change(const nlohmann::json& action, const std::string& by, const std::string& sentence);
 };
 

@@ -12,6 +12,7 @@
 #include "core/try.hpp"
 #include "params/scene_text.hpp"
 #include "twin/kinds.hpp"
+#include "twin/scenario_parts.hpp"
 #include "twin/section_values.hpp"
 
 namespace talus::twin {
@@ -297,8 +298,6 @@ void keep_alarms(const Setup& setup, params::SceneSpec& spec, std::string& heade
     });
 }
 
-}  // namespace
-
 Result<SceneCopy> scene_copy(const std::filesystem::path& file, const std::vector<std::string>& overrides,
                              const Setup& setup, const scene::Scene& scene) {
     TALUS_ASSIGN(params::SceneSpec spec, scene::parse_scene(file, overrides));
@@ -323,6 +322,24 @@ Result<SceneCopy> scene_copy(const std::filesystem::path& file, const std::vecto
     }
     copy.text = params::write_short_scene(spec, header);
     return Result<SceneCopy>(std::move(copy));
+}
+
+}  // namespace
+
+std::function<Result<SceneCopy>(const std::filesystem::path&, const std::vector<std::string>&)> scene_copy_of(
+    const Scenario& scenario) {
+    Setup setup = scenario.run().setup();
+    for (ReleaseSetup& release : setup.releases) {
+        // One that was drawn has no start time but the one at which it was triggered.
+        if (!std::isinf(release.body->spec.start_time)) continue;
+        terrain::Release body = *release.body;
+        body.spec.start_time = scenario.run().start_time_of(release.id);
+        release.body = std::make_shared<const terrain::Release>(std::move(body));
+    }
+    return [setup = std::move(setup), scene = scenario.parts().scene](
+               const std::filesystem::path& file, const std::vector<std::string>& overrides) -> Result<SceneCopy> {
+        return scene_copy(file, overrides, setup, *scene);
+    };
 }
 
 }  // namespace talus::twin

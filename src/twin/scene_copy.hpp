@@ -1,15 +1,16 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <string>
 #include <vector>
 
 #include "core/result.hpp"
 #include "geo/vector.hpp"
-#include "scene/scene.hpp"
-#include "twin/setup.hpp"
 
 namespace talus::twin {
+
+class Scenario;
 
 /// A layer of the file `drawn_file` beside a scene file.
 struct DrawnLayer {
@@ -32,11 +33,12 @@ struct SceneCopy {
     static constexpr const char* drawn_file = "drawn.gpkg";
 };
 
-/// A scene that loads as `file`, a whole path, with `overrides`, with what a setup has in place of its own, notes
-/// aside. A run of it ends in the state that a restart of the setup ends in, if drawn releases are triggered at their
-/// start times. Comments at the top name what it lacks: releases without a start time, triggers and alarms of what is
-/// not there. Errors: as scene::parse_scene; no debris.
-[[nodiscard]] Result<SceneCopy> scene_copy(const std::filesystem::path& file, const std::vector<std::string>& overrides,
-                                           const Setup& setup, const scene::Scene& scene);
+/// The work of making a scene that loads as `file`, a whole path, with `overrides`, with what the present setup has in
+/// place of its own, notes aside; for any thread. A run of it ends in the state that a restart of the setup ends in, if
+/// drawn releases are triggered at their start times. Comments at the top name what it lacks: releases without a start
+/// time, triggers and alarms of what is not there. Errors: as scene::parse_scene; no debris.
+[[nodiscard]] std::function<Result<SceneCopy>(const std::filesystem::path& file,
+                                              const std::vector<std::string>& overrides)>
+scene_copy_of(const Scenario& scenario);
 
 }  // namespace talus::twin

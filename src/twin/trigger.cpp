@@ -13,7 +13,7 @@
 #include "terrain/inflow.hpp"
 #include "twin/json_keys.hpp"
 #include "twin/kinds.hpp"
-#include "twin/scenario.hpp"
+#include "twin/scenario_parts.hpp"
 
 namespace talus::twin {
 namespace {
@@ -202,6 +202,13 @@ Result<Edit> read_trigger(const json& action, const Setup& setup, const ActionCo
     edit.sentence =
         fmt::format("started by trigger \"{}\"{}{}", trigger.name, told(values), reason ? ": " + *reason : "");
     return edit;
+}
+
+const json* started_by(const Scenario& scenario) {
+    const std::vector<JournalEntry>& entries = scenario.parts().entries;
+    const auto found = std::find_if(entries.begin(), entries.end(),
+                                    [](const JournalEntry& entry) { return entry.action["action"] == "trigger"; });
+    return found == entries.end() ? nullptr : &found->action;
 }
 
 Result<GaugeReading> read_gauge(const json& action, const Setup& setup, const Setup& begun_with,

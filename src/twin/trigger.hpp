@@ -13,12 +13,17 @@
 /// The actions of triggers and gauges (docs/triggers.md).
 namespace talus::twin {
 
+class Scenario;
+
 /// Time in which a hydrograph goes from one value of a gauge to the next, s.
 inline constexpr double gauge_rise_time = 1;
 
 /// `{"action": "trigger", "trigger": name, "source", "received_at", "values": {...}}`: the setup with which a run
 /// starts. Errors: it has begun; no such trigger; a value that the trigger does not allow, with its range; no debris.
 [[nodiscard]] Result<Edit> read_trigger(const nlohmann::json& action, const Setup& setup, const ActionContext& context);
+
+/// The action of the trigger that started the run of a scenario; nullptr: people did.
+[[nodiscard]] const nlohmann::json* started_by(const Scenario& scenario);
 
 /// A value of a gauge as an inflow of the run.
 struct GaugeReading {

@@ -10,6 +10,7 @@
 
 #include "cli/program.hpp"
 #include "cli/small_scene.hpp"
+#include "twin/answers.hpp"
 #include "twin/scenario.hpp"
 
 namespace talus::test {
@@ -74,7 +75,7 @@ TEST(Publish, a_saved_session_keeps_its_runs_as_far_as_they_went) {
     auto scenario = twin::Scenario::open(std::make_shared<const scene::Scene>(*std::move(scene)));
     ASSERT_TRUE(scenario) << scenario.error().message;
     for (int k = 0; k < 20; ++k) (*scenario)->advance();
-    const json journal = (*scenario)->journal_json();
+    const json journal = journal_json(**scenario);
     const json session = {{"talus_session", 1},
                           {"name", "two"},
                           {"title", "slope"},

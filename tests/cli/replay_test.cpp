@@ -7,6 +7,7 @@
 
 #include "cli/program.hpp"
 #include "cli/small_scene.hpp"
+#include "twin/answers.hpp"
 #include "twin/scenario.hpp"
 
 namespace talus::test {
@@ -33,7 +34,7 @@ json play(const SmallScene& inputs) {
     EXPECT_TRUE((*scenario)->apply(
         {{"action", "set_parameter"}, {"key", "material.friction_coefficient"}, {"value", 0.3}}, "Ann"));
     for (int k = 0; k < 20; ++k) (*scenario)->advance();
-    return (*scenario)->journal_json();
+    return journal_json(**scenario);
 }
 
 TEST(Replay, finds_the_same_result_again) {

@@ -229,14 +229,14 @@ TEST(Abuse, edits_while_it_runs_are_replayed_to_the_same_state) {
             (void)(*opened)->apply(any_action(dice), "Ann");  // refused or done
             for (int step = dice.below(20); step > 0; --step) (*opened)->advance();
             ASSERT_NE((*opened)->phase(), run::RunPhase::fault)
-                << (*opened)->message() << " after " << (*opened)->journal_json()["actions"] << " from "
-                << (*opened)->journal_json()["first_setup"]["material"];
+                << (*opened)->message() << " after " << journal_json(**opened)["actions"] << " from "
+                << journal_json(**opened)["first_setup"]["material"];
         }
-        const auto journal = read_journal((*opened)->journal_json().dump());
+        const auto journal = read_journal(journal_json(**opened).dump());
         ASSERT_TRUE(journal) << journal.error().message;
         const auto replayed = replay(*journal, scene, {});
         ASSERT_TRUE(replayed) << replayed.error().message;
-        EXPECT_EQ(replayed->hash, to_hex((*opened)->hash()));
+        EXPECT_EQ(replayed->hash, to_hex(hash(**opened)));
     }
 }
 

@@ -47,7 +47,7 @@ scene::Scene watched_scene() {
 
 const RaisedAlarm* find(const Scenario& scenario, const std::string& name) {
     const RaisedAlarm* found = nullptr;
-    for (const RaisedAlarm& alarm : scenario.alarms()) {
+    for (const RaisedAlarm& alarm : scenario.run().alarms()) {
         if (alarm.name != name) continue;
         EXPECT_EQ(found, nullptr) << name << " twice";
         found = &alarm;
@@ -57,7 +57,7 @@ const RaisedAlarm* find(const Scenario& scenario, const std::string& name) {
 
 TEST(Alarms, are_raised_once_with_the_time_at_which_the_front_is_expected) {
     const auto scenario = open(watched_scene());
-    EXPECT_TRUE(scenario->alarms().empty());
+    EXPECT_TRUE(scenario->run().alarms().empty());
     run_until(*scenario, 15);
     const RaisedAlarm *near = find(*scenario, "near"), *soon = find(*scenario, "soon"),
                       *there = find(*scenario, "there"), *load = find(*scenario, "load"), *wet = find(*scenario, "wet");
@@ -66,7 +66,7 @@ TEST(Alarms, are_raised_once_with_the_time_at_which_the_front_is_expected) {
     // The house begins at x = 60 m, 55 m down the path.
     EXPECT_THAT(near->sentence, HasSubstr("before House 38"));
     EXPECT_EQ(near->message, "Leave the house.");
-    const double hit = scenario->impacts_json()["buildings"][0]["first_hit_s"];
+    const double hit = impacts_json(*scenario)["buildings"][0]["first_hit_s"];
     ASSERT_TRUE(near->expected && soon->expected && there->expected);
     EXPECT_LT(near->time, hit);
     EXPECT_NEAR(*near->expected, hit, 0.5 * (hit - near->time));
@@ -84,14 +84,14 @@ TEST(Alarms, are_the_same_in_a_replay_and_name_the_state_that_raised_them) {
     run_until(*scenario, 1);
     act(*scenario, {{"action", "set_parameter"}, {"key", "material.friction_coefficient"}, {"value", 0.2}});
     run_until(*scenario, 8);
-    const auto journal = read_journal(scenario->journal_json().dump());
+    const auto journal = read_journal(journal_json(*scenario).dump());
     ASSERT_TRUE(journal);
     const auto again = replay(*journal, std::make_shared<const scene::Scene>(watched_scene()));
     ASSERT_TRUE(again);
-    ASSERT_FALSE(scenario->alarms().empty());
-    ASSERT_EQ(again->scenario->alarms().size(), scenario->alarms().size());
-    for (std::size_t k = 0; k < scenario->alarms().size(); ++k) {
-        const RaisedAlarm &a = scenario->alarms()[k], &b = again->scenario->alarms()[k];
+    ASSERT_FALSE(scenario->run().alarms().empty());
+    ASSERT_EQ(again->scenario->run().alarms().size(), scenario->run().alarms().size());
+    for (std::size_t k = 0; k < scenario->run().alarms().size(); ++k) {
+        const RaisedAlarm &a = scenario->run().alarms()[k], &b = again->scenario->run().alarms()[k];
         EXPECT_EQ(a.name, b.name);
         EXPECT_EQ(a.step, b.step);
         EXPECT_EQ(a.hash, b.hash);
@@ -99,7 +99,7 @@ TEST(Alarms, are_the_same_in_a_replay_and_name_the_state_that_raised_them) {
     }
     // A journal cut at that step ends with that hash.
     Journal cut = *journal;
-    const RaisedAlarm& last = scenario->alarms().back();
+    const RaisedAlarm& last = scenario->run().alarms().back();
     cut.steps = last.step;
     EXPECT_EQ(replay(cut, std::make_shared<const scene::Scene>(watched_scene()))->hash, to_hex(last.hash));
 }
@@ -107,9 +107,9 @@ TEST(Alarms, are_the_same_in_a_replay_and_name_the_state_that_raised_them) {
 TEST(Alarms, begin_anew_with_a_restart_and_forget_a_house_that_was_removed) {
     const auto scenario = open(watched_scene());
     run_until(*scenario, 8);
-    ASSERT_FALSE(scenario->alarms().empty());
+    ASSERT_FALSE(scenario->run().alarms().empty());
     act(*scenario, {{"action", "restart"}});
-    EXPECT_TRUE(scenario->alarms().empty());
+    EXPECT_TRUE(scenario->run().alarms().empty());
     act(*scenario, {{"action", "remove_building"}, {"id", "building-1"}});
     run_until(*scenario, 8);
     EXPECT_EQ(find(*scenario, "near"), nullptr);

@@ -14,7 +14,7 @@ namespace {
 using ::testing::HasSubstr;
 
 DepthAveragedRun run_of(const Scenario& scenario, const DepthAveragedLimits& limits = {}) {
-    const scene::Scene scene = talus::test::value_of(scenario.for_depth_averaged()());
+    const scene::Scene scene = talus::test::value_of(scene_for_depth_averaged(scenario)());
     const std::atomic<bool> stop = false;
     return talus::test::value_of(run_depth_averaged(scene, stop, {}, limits));
 }
@@ -63,11 +63,11 @@ TEST(DepthAveragedBeside, changes_nothing_of_the_run) {
     run_until(*with, 1);
     run_until(*without, 1);
     const auto run = std::make_shared<const DepthAveragedRun>(run_of(*with));
-    (void)with->compared_with(run)();
+    (void)comparison_with(*with, run)();
     run_until(*with, 2);
     run_until(*without, 2);
-    EXPECT_EQ(with->hash(), without->hash());
-    EXPECT_EQ(with->journal_json(), without->journal_json());
+    EXPECT_EQ(hash(*with), hash(*without));
+    EXPECT_EQ(journal_json(*with), journal_json(*without));
 }
 
 TEST(DepthAveragedBeside, maps_are_those_of_a_time_where_that_is_known) {
@@ -98,7 +98,7 @@ TEST(DepthAveragedBeside, compares_both_by_the_same_time_and_as_a_whole) {
     }());
     run_until(*scenario, 2);
     const auto run = std::make_shared<const DepthAveragedRun>(run_of(*scenario));
-    const json half = scenario->compared_with(run)();
+    const json half = comparison_with(*scenario, run)();
     EXPECT_EQ(half["over"], false);
     const auto row = [](const json& compared, const std::string& key) {
         for (const json& r : compared["rows"]) {
@@ -119,7 +119,7 @@ TEST(DepthAveragedBeside, compares_both_by_the_same_time_and_as_a_whole) {
     }
 
     run_until(*scenario, 1000);
-    const json whole = scenario->compared_with(run)();
+    const json whole = comparison_with(*scenario, run)();
     const double speed = row(whole, "peak_speed")["particles"];
     EXPECT_GT(speed, 1);
     EXPECT_GE(speed, row(half, "peak_speed")["particles"]);
@@ -136,19 +136,19 @@ TEST(DepthAveragedBeside, compares_both_by_the_same_time_and_as_a_whole) {
 
 TEST(DepthAveragedBeside, a_net_is_refused_in_a_sentence_and_unused_values_are_named) {
     const auto scenario = open(channel_scene());
-    const std::string key = scenario->setup_key();
+    const std::string key = setup_key(*scenario);
     act(*scenario, {{"action", "put_barrier"},
                     {"name", "mesh"},
                     {"line", {{west + 52, south + 8}, {west + 52, south + 52}}},
                     {"height_m", 4},
                     {"thickness_m", 1},
                     {"passing_share", 0.5}});
-    EXPECT_NE(scenario->setup_key(), key);
-    const auto refused = scenario->for_depth_averaged()();
+    EXPECT_NE(setup_key(*scenario), key);
+    const auto refused = scene_for_depth_averaged(*scenario)();
     ASSERT_FALSE(refused);
     EXPECT_EQ(refused.error().message, "The depth-averaged model has no nets, and \"mesh\" is one.");
     act(*scenario, {{"action", "undo"}});
-    EXPECT_EQ(scenario->setup_key(), key);
+    EXPECT_EQ(setup_key(*scenario), key);
     act(*scenario, {{"action", "set_parameter"}, {"key", "material.viscosity"}, {"value", 0.13}});
     act(*scenario, {{"action", "put_release"},
                     {"name", "second"},

@@ -39,8 +39,8 @@ TEST(ErosionLayer, is_what_the_bed_has_lost_in_every_cell_of_the_terrain) {
     const auto scenario = open(gravel_scene());
     run_until(*scenario, 4);
     while ((*run)->state().step < scenario->step()) (*run)->advance();
-    ASSERT_EQ(scenario->hash(), hash_state((*run)->state()));
-    ASSERT_TRUE(scenario->has_erosion());
+    ASSERT_EQ(hash(*scenario), hash_state((*run)->state()));
+    ASSERT_GT(scenario->run().summary().entrained, 0);
 
     const Grid<float> eroded = layer(*scenario, "erosion_depth");
     const terrain::Bed& bed = (*run)->ground().bed;
@@ -67,15 +67,15 @@ TEST(ErosionLayer, is_told_as_it_was_at_a_time_of_the_recording) {
     const auto scenario = open(gravel_scene());
     std::vector<std::pair<double, Grid<float>>> told;
     while (scenario->time() < 4) {
-        const std::size_t frames = scenario->recording_json()["times_s"].size();
+        const std::size_t frames = recording_json(*scenario)["times_s"].size();
         scenario->advance();
-        if (scenario->recording_json()["times_s"].size() == frames) continue;
+        if (recording_json(*scenario)["times_s"].size() == frames) continue;
         told.emplace_back(scenario->time(), layer(*scenario, "erosion_depth"));
     }
     EXPECT_TRUE(holds_nothing(told.front().second));
     ASSERT_FALSE(holds_nothing(told.back().second));
     for (const auto& [time, then] : told) {
-        const Grid<float> again = (*scenario->layer("erosion_depth", time + 1e-3))();
+        const Grid<float> again = (*layer_of(*scenario, "erosion_depth", time + 1e-3))();
         ASSERT_EQ(again.geometry, then.geometry) << time;
         for (std::size_t k = 0; k < then.values.size(); ++k) {
             if (!std::isnan(then.values[k]) || !std::isnan(again.values[k])) {
@@ -83,27 +83,27 @@ TEST(ErosionLayer, is_told_as_it_was_at_a_time_of_the_recording) {
             }
         }
     }
-    EXPECT_TRUE(holds_nothing((*scenario->layer("erosion_depth", 0.0))()));
-    EXPECT_THAT(scenario->layer("erosion_depth", -1).error().message, HasSubstr("nothing is recorded"));
+    EXPECT_TRUE(holds_nothing((*layer_of(*scenario, "erosion_depth", 0.0))()));
+    EXPECT_THAT(layer_of(*scenario, "erosion_depth", -1).error().message, HasSubstr("nothing is recorded"));
 }
 
 TEST(ErosionLayer, is_one_empty_cell_where_nothing_was_picked_up) {
     const auto plain = open(channel_scene());
     run_until(*plain, 3);
-    EXPECT_FALSE(plain->has_erosion());
+    EXPECT_EQ(plain->run().summary().entrained, 0);
     EXPECT_TRUE(holds_nothing(layer(*plain, "erosion_depth")));
-    EXPECT_TRUE(holds_nothing((*plain->layer("erosion_depth", 1.0))()));
+    EXPECT_TRUE(holds_nothing((*layer_of(*plain, "erosion_depth", 1.0))()));
 
     const auto scenario = open(gravel_scene());
     run_until(*scenario, 4);
     ASSERT_FALSE(holds_nothing(layer(*scenario, "erosion_depth")));
-    const auto copy = scenario->copy();
+    const auto copy = scenario->copying()({});
     ASSERT_TRUE(copy);
     EXPECT_TRUE(holds_nothing(layer(**copy, "erosion_depth")));
     act(*scenario, {{"action", "restart"}});
-    EXPECT_FALSE(scenario->has_erosion());
+    EXPECT_EQ(scenario->run().summary().entrained, 0);
     EXPECT_TRUE(holds_nothing(layer(*scenario, "erosion_depth")));
-    EXPECT_TRUE(holds_nothing((*scenario->layer("erosion_depth", 4.0))())) << "the recording began anew";
+    EXPECT_TRUE(holds_nothing((*layer_of(*scenario, "erosion_depth", 4.0))())) << "the recording began anew";
 }
 
 TEST(Export, of_a_run_on_a_bed_is_counted_as_the_run_of_the_scene) {
@@ -114,10 +114,10 @@ TEST(Export, of_a_run_on_a_bed_is_counted_as_the_run_of_the_scene) {
     ASSERT_TRUE(run);
     const auto scenario = open(scene);
     run_until(*scenario, 100);
-    ASSERT_TRUE(scenario->has_erosion());
+    ASSERT_GT(scenario->run().summary().entrained, 0);
     const talus::test::TemporaryFolder folder, exported;
     ASSERT_TRUE(products::write_products(scene, *run, folder.path()));
-    ASSERT_TRUE(scenario->products()(exported.path()));
+    ASSERT_TRUE(products_of(*scenario)(exported.path()));
     const auto manifest_in = [](const talus::test::TemporaryFolder& written) {
         return json::parse(talus::test::read_text(written.file("manifest.json")));
     };

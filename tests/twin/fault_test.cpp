@@ -27,7 +27,7 @@ TEST(Fault, is_kept_with_its_journal_and_the_last_good_state) {
     EXPECT_THAT(scenario->message(), HasSubstr("solver.compression_limit"));
     EXPECT_THAT(scenario->message(),
                 HasSubstr("the last action was set_parameter; journal and last good state are in"));
-    EXPECT_EQ(scenario->state_json()["message"], scenario->message());
+    EXPECT_EQ(state_json(*scenario)["message"], scenario->message());
     const auto kept = folder.path() / "fault_1";
     const json fault = json::parse(talus::test::read_text(kept / "fault.json"));
     EXPECT_EQ(fault["step"], scenario->step());
@@ -38,7 +38,7 @@ TEST(Fault, is_kept_with_its_journal_and_the_last_good_state) {
     const auto journal = read_journal(talus::test::read_text(kept / "journal.json"));
     ASSERT_TRUE(journal) << journal.error().message;
     EXPECT_EQ(journal->steps, scenario->step());
-    EXPECT_EQ(journal->hash, fmt::format("{:016x}", scenario->hash()));
+    EXPECT_EQ(journal->hash, fmt::format("{:016x}", hash(*scenario)));
 }
 
 }  // namespace

@@ -144,9 +144,9 @@ TEST(Frame, without_particles_is_one_too) {
 TEST(Frame, of_a_scenario_holds_depths_that_add_up_to_its_debris) {
     const auto scenario = open(channel_scene());
     run_until(*scenario, 2);
-    const Decoded d = decode(encode(*scenario->frame(1, frame_running), 0));
+    const Decoded d = decode(encode(*scenario->run().frame(1, frame_running), 0));
     EXPECT_EQ(d.time, scenario->time());
-    const json map = scenario->scene_json()["map"];
+    const json map = scene_json(*scenario)["map"];
     const double cell = map["cell_m"];
     double volume = 0, fastest = 0;
     for (const double depth : d.depth) volume += depth * cell * cell;
@@ -155,7 +155,7 @@ TEST(Frame, of_a_scenario_holds_depths_that_add_up_to_its_debris) {
     EXPECT_GT(fastest, 1);
     EXPECT_LE(fastest, number(*scenario, "largest_speed_mps") * 1.01);
     // The particles lie where the depths are.
-    const json origin = scenario->scene_json()["origin"];
+    const json origin = scene_json(*scenario)["origin"];
     for (std::size_t id = 0; id < d.speed.size(); ++id) {
         const double x = d.position[0][id] + origin[0].get<double>() - map["x_min_m"].get<double>();
         const double y = d.position[1][id] + origin[1].get<double>() - map["y_min_m"].get<double>();
@@ -170,16 +170,16 @@ TEST(Frame, of_a_scenario_holds_depths_that_add_up_to_its_debris) {
 TEST(Recording, is_of_even_times_and_can_be_looked_up) {
     const auto scenario = open(channel_scene());
     run_until(*scenario, 2);
-    const json recording = scenario->recording_json();
+    const json recording = recording_json(*scenario);
     ASSERT_EQ(recording["times_s"].size(), 21U);
     for (int k = 0; k <= 20; ++k) {
         EXPECT_GE(recording["times_s"][k].get<double>(), 0.1 * k - 1e-8);
         EXPECT_LT(recording["times_s"][k].get<double>(), 0.1 * k + 1.0 / 60);
     }
-    const Decoded d = decode(encode(*scenario->recorded_frame(1.05), 0, frame_recorded));
+    const Decoded d = decode(encode(*scenario->run().recording().at(1.05), 0, frame_recorded));
     EXPECT_EQ(d.time, recording["times_s"][10]);
     EXPECT_EQ(d.flags & 4, 4);
-    EXPECT_EQ(scenario->recorded_frame(-1), nullptr);
+    EXPECT_EQ(scenario->run().recording().at(-1), nullptr);
 }
 
 TEST(Recording, thins_out_its_older_half_when_full) {
@@ -208,8 +208,8 @@ TEST(Probe, reads_depth_speed_and_pressure_from_the_recording) {
     const auto scenario = open(channel_scene());
     const PlanPoint p{west + 30.5, south + 30.5};
     run_until(*scenario, 4);
-    const json probe = scenario->probe(p)();
-    ASSERT_EQ(probe["time_s"].size(), scenario->recording_json()["times_s"].size());
+    const json probe = probe_at(*scenario, p)();
+    ASSERT_EQ(probe["time_s"].size(), recording_json(*scenario)["times_s"].size());
     EXPECT_EQ(probe["depth_m"][0], 0);
     double deepest = 0, fastest = 0;
     for (std::size_t k = 0; k < probe["time_s"].size(); ++k) {
@@ -219,13 +219,13 @@ TEST(Probe, reads_depth_speed_and_pressure_from_the_recording) {
         EXPECT_NEAR(probe["pressure_kPa"][k].get<double>(), 2 * speed * speed, 1e-9);
     }
     // The peaks see every step, the recording every sixth or so.
-    const Grid<float> depth = (*scenario->layer("peak_depth"))(), speed = (*scenario->layer("peak_speed"))();
+    const Grid<float> depth = (*layer_of(*scenario, "peak_depth"))(), speed = (*layer_of(*scenario, "peak_speed"))();
     const auto column = static_cast<int>((p.x - depth.geometry.x_min) / depth.geometry.cell),
                row = static_cast<int>((p.y - depth.geometry.y_min) / depth.geometry.cell);
     EXPECT_GT(deepest, 0.1);
     EXPECT_NEAR(deepest, depth.at(column, row), 0.15 * deepest);
     EXPECT_NEAR(fastest, speed.at(column, row), 0.2 * fastest);
-    EXPECT_EQ(scenario->probe({0, 0})()["depth_m"][5], 0);
+    EXPECT_EQ(probe_at(*scenario, {0, 0})()["depth_m"][5], 0);
 }
 
 TEST(Grid, message_is_as_the_protocol_says) {

@@ -44,7 +44,7 @@ double front_after(Scenario& scenario, double time) {
 }
 
 void expect_same_when_replayed(const Scenario& scenario, scene::Scene scene) {
-    const auto journal = read_journal(scenario.journal_json().dump());
+    const auto journal = read_journal(journal_json(scenario).dump());
     ASSERT_TRUE(journal) << journal.error().message;
     const auto again = replay(*journal, std::make_shared<const scene::Scene>(std::move(scene)));
     ASSERT_TRUE(again) << again.error().message;
@@ -73,7 +73,7 @@ TEST(Zone, drawn_while_debris_moves_holds_it_back_and_undone_lets_it_go) {
     const auto plain = open(channel_scene()), rough = open(channel_scene());
     run_until(*plain, 1);
     run_until(*rough, 1);
-    ASSERT_EQ(plain->hash(), rough->hash());
+    ASSERT_EQ(hash(*plain), hash(*rough));
     const Done done = act(*rough, rough_zone());
     EXPECT_EQ(done.created, "zone-1");
     EXPECT_EQ(done.sentence, "zone \"zone 1\" drawn: 1960 m2");
@@ -83,14 +83,14 @@ TEST(Zone, drawn_while_debris_moves_holds_it_back_and_undone_lets_it_go) {
     run_until(*rough, 12);
     const double held = number(*rough, "front_chainage_m");
     act(*rough, {{"action", "undo"}});
-    EXPECT_EQ(rough->setup_json()["zones"].size(), 0U);
+    EXPECT_EQ(setup_json(*rough)["zones"].size(), 0U);
     EXPECT_GT(front_after(*rough, 20), held + 3) << "debris at rest on the slope wakes";
     expect_same_when_replayed(*rough, channel_scene());
 }
 
 TEST(Zone, changes_by_the_keys_of_a_scene_and_says_what_it_holds) {
     const auto scenario = open(furnished_scene());
-    json zone = scenario->setup_json()["zones"][0];
+    json zone = setup_json(*scenario)["zones"][0];
     EXPECT_EQ(zone["name"], "wood");
     EXPECT_EQ(zone["from_scene"], true);
     EXPECT_EQ(zone["area_m2"], 200);
@@ -103,16 +103,16 @@ TEST(Zone, changes_by_the_keys_of_a_scene_and_says_what_it_holds) {
                     {"cohesion_Pa", 300},
                     {"stem_diameter_m", 0.6},
                     {"move_m", {5, 0}}});
-    zone = scenario->setup_json()["zones"][0];
+    zone = setup_json(*scenario)["zones"][0];
     EXPECT_EQ(zone["name"], "old wood");
     EXPECT_EQ(zone["cohesion_Pa"], 300);
     EXPECT_EQ(zone["stem_diameter_m"], 0.6);
     EXPECT_EQ(zone["stem_density_pm2"], 0.1) << "what is left out stays";
     EXPECT_EQ(zone["polygons"][0][0][0], json({west + 65, south + 20}));
     act(*scenario, {{"action", "put_zone"}, {"id", id}, {"cohesion_Pa", nullptr}});
-    EXPECT_EQ(scenario->setup_json()["zones"][0]["cohesion_Pa"], nullptr);
+    EXPECT_EQ(setup_json(*scenario)["zones"][0]["cohesion_Pa"], nullptr);
     act(*scenario, {{"action", "remove_zone"}, {"id", id}});
-    EXPECT_EQ(scenario->setup_json()["zones"].size(), 0U);
+    EXPECT_EQ(setup_json(*scenario)["zones"].size(), 0U);
 }
 
 TEST(Zone, has_no_drag_of_its_own_beside_samosat) {
@@ -153,12 +153,12 @@ TEST(Bed, drawn_at_time_0_is_picked_up) {
     const auto scenario = open(channel_scene());
     const Done done = act(*scenario, loose_bed());
     EXPECT_EQ(done.sentence, "bed \"bed 1\" drawn: 980 m3");
-    const json bed = scenario->setup_json()["beds"][0];
+    const json bed = setup_json(*scenario)["beds"][0];
     EXPECT_EQ(bed["depth_m"], 0.5);
     EXPECT_EQ(bed["volume_m3"], 980);
     EXPECT_EQ(bed["law"], "growth");
     EXPECT_EQ(bed["in_force"], true);
-    EXPECT_EQ(scenario->setup_json()["pending_restart"], false);
+    EXPECT_EQ(setup_json(*scenario)["pending_restart"], false);
     run_until(*scenario, 5);
     ASSERT_NE(scenario->phase(), run::RunPhase::fault) << scenario->message();
     EXPECT_GT(number(*scenario, "volume_entrained_m3"), 3);
@@ -170,32 +170,32 @@ TEST(Bed, changed_later_waits_for_the_restart) {
     const auto scenario = open(channel_scene());
     run_until(*scenario, 1);
     const std::string id = act(*scenario, loose_bed()).created;
-    EXPECT_EQ(scenario->setup_json()["beds"][0]["in_force"], false);
-    EXPECT_EQ(scenario->setup_json()["pending_restart"], true);
+    EXPECT_EQ(setup_json(*scenario)["beds"][0]["in_force"], false);
+    EXPECT_EQ(setup_json(*scenario)["pending_restart"], true);
     run_until(*scenario, 4);
     EXPECT_EQ(number(*scenario, "volume_entrained_m3"), 0);
     act(*scenario, {{"action", "restart"}});
-    EXPECT_EQ(scenario->setup_json()["beds"][0]["in_force"], true);
-    EXPECT_EQ(scenario->setup_json()["pending_restart"], false);
+    EXPECT_EQ(setup_json(*scenario)["beds"][0]["in_force"], true);
+    EXPECT_EQ(setup_json(*scenario)["pending_restart"], false);
     run_until(*scenario, 4);
     EXPECT_GT(number(*scenario, "volume_entrained_m3"), 1);
     act(*scenario, {{"action", "remove_bed"}, {"id", id}});
-    EXPECT_EQ(scenario->setup_json()["pending_restart"], true);
+    EXPECT_EQ(setup_json(*scenario)["pending_restart"], true);
     act(*scenario, {{"action", "undo"}});
-    EXPECT_EQ(scenario->setup_json()["pending_restart"], false) << "as it began, however it came about";
+    EXPECT_EQ(setup_json(*scenario)["pending_restart"], false) << "as it began, however it came about";
     expect_same_when_replayed(*scenario, channel_scene());
 }
 
 TEST(Bed, of_the_scene_is_shown_and_gets_one_depth) {
     const auto scenario = open(furnished_scene());
-    json bed = scenario->setup_json()["beds"][0];
+    json bed = setup_json(*scenario)["beds"][0];
     EXPECT_EQ(bed["name"], "fan");
     EXPECT_EQ(bed["depth_m"], nullptr) << "0.4 and 0.8 m";
     EXPECT_NEAR(bed["volume_m3"].get<double>(), 120, 1e-9);
     EXPECT_EQ(bed["polygons"].size(), 2U);
     const std::string id = bed["id"];
     act(*scenario, {{"action", "put_bed"}, {"id", id}, {"law", "shear"}, {"depth_m", 1}});
-    bed = scenario->setup_json()["beds"][0];
+    bed = setup_json(*scenario)["beds"][0];
     EXPECT_EQ(bed["law"], "shear");
     EXPECT_NEAR(bed["volume_m3"].get<double>(), 200, 1e-9);
     EXPECT_EQ(bed["growth_rate_per_m"], 0.02);
@@ -218,12 +218,12 @@ TEST(Inflow, drawn_brings_debris_across_its_line) {
     const Done done = act(*scenario, gully(10));
     EXPECT_EQ(done.created, "inflow-1");
     EXPECT_EQ(done.sentence, "inflow \"inflow 1\" drawn: 20 m3");
-    EXPECT_EQ(scenario->setup_json()["inflows"][0]["in_force"], true);
+    EXPECT_EQ(setup_json(*scenario)["inflows"][0]["in_force"], true);
     run_until(*scenario, 4);
     ASSERT_NE(scenario->phase(), run::RunPhase::fault) << scenario->message();
     EXPECT_NEAR(number(*scenario, "volume_released_m3"), released + 20, 0.3);
     act(*scenario, {{"action", "put_inflow"}, {"id", done.created}, {"hydrograph", rows(5)}});
-    const json inflow = scenario->setup_json()["inflows"][0];
+    const json inflow = setup_json(*scenario)["inflows"][0];
     EXPECT_EQ(inflow["volume_m3"], 10);
     EXPECT_EQ(inflow["in_force"], false);
     expect_same_when_replayed(*scenario, channel_scene());
@@ -235,23 +235,23 @@ TEST(Inflow, drawn_brings_debris_across_its_line) {
 
 TEST(Inflow, moves_between_a_line_and_an_area) {
     const auto scenario = open(furnished_scene());
-    const std::string id = scenario->setup_json()["inflows"][0]["id"];
+    const std::string id = setup_json(*scenario)["inflows"][0]["id"];
     act(*scenario, {{"action", "put_inflow"},
                     {"id", id},
                     {"polygon", ring(west + 20, south + 26, west + 30, south + 34)},
                     {"direction_deg", 90}});
-    json inflow = scenario->setup_json()["inflows"][0];
+    json inflow = setup_json(*scenario)["inflows"][0];
     EXPECT_EQ(inflow["line"], nullptr);
     EXPECT_EQ(inflow["polygons"].size(), 1U);
     EXPECT_NEAR(inflow["direction_deg"].get<double>(), 90, 1e-9);
     act(*scenario, {{"action", "put_inflow"}, {"id", id}, {"move_m", {2, 1}}});
-    EXPECT_EQ(scenario->setup_json()["inflows"][0]["polygons"][0][0][0], json({west + 22, south + 27}));
+    EXPECT_EQ(setup_json(*scenario)["inflows"][0]["polygons"][0][0][0], json({west + 22, south + 27}));
     run_until(*scenario, 3);
     EXPECT_NE(scenario->phase(), run::RunPhase::fault) << scenario->message();
     expect_same_when_replayed(*scenario, furnished_scene());
     act(*scenario,
         {{"action", "put_inflow"}, {"id", id}, {"line", {{west + 30, south + 27}, {west + 30, south + 33}}}});
-    inflow = scenario->setup_json()["inflows"][0];
+    inflow = setup_json(*scenario)["inflows"][0];
     EXPECT_EQ(inflow["polygons"].size(), 0U);
     EXPECT_EQ(inflow["direction_deg"], nullptr);
 }
@@ -290,7 +290,7 @@ TEST(Ground, as_it_was_in_the_run_is_in_the_products) {
     const std::filesystem::path folder = std::filesystem::path(testing::TempDir()) / "ground products";
     std::filesystem::remove_all(folder);
     std::filesystem::create_directories(folder);
-    const Status written = scenario->products()(folder);
+    const Status written = products_of(*scenario)(folder);
     ASSERT_TRUE(written) << written.error().message;
     std::ifstream in(folder / "report.html");
     const std::string report((std::istreambuf_iterator<char>(in)), {});

@@ -53,10 +53,10 @@ void play(Scenario& scenario) {
 TEST(Journal, replays_to_the_same_hash_on_any_number_of_threads) {
     const auto scenario = open(scene_with_threads(2));
     play(*scenario);
-    const std::string text = scenario->journal_json().dump();
+    const std::string text = journal_json(*scenario).dump();
     const auto journal = read_journal(text);
     ASSERT_TRUE(journal) << journal.error().message;
-    EXPECT_EQ(journal->hash, to_hex(scenario->hash()));
+    EXPECT_EQ(journal->hash, to_hex(hash(*scenario)));
     for (const int threads : {1, 2}) {
         std::uint64_t last = 0;
         const auto again = replay(*journal, std::make_shared<const scene::Scene>(scene_with_threads(threads)),
@@ -86,17 +86,17 @@ TEST(Journal, begins_anew_at_restart_with_all_that_was_set_up) {
                                     .created;
     EXPECT_EQ(created, "building-2");
     run_until(*scenario, 2);
-    const auto journal = read_journal(scenario->journal_json().dump());
+    const auto journal = read_journal(journal_json(*scenario).dump());
     ASSERT_TRUE(journal) << journal.error().message;
     EXPECT_EQ(journal->entries.size(), 2U);
     const auto again = replay(*journal, std::make_shared<const scene::Scene>(scene_with_threads(2)));
     ASSERT_TRUE(again) << again.error().message;
-    EXPECT_EQ(again->hash, to_hex(scenario->hash()));
+    EXPECT_EQ(again->hash, to_hex(hash(*scenario)));
 }
 
 TEST(Journal, says_which_inputs_have_changed) {
     const auto scenario = open(scene_with_threads(2));
-    const auto journal = read_journal(scenario->journal_json().dump());
+    const auto journal = read_journal(journal_json(*scenario).dump());
     scene::Scene scene = scene_with_threads(2);
     EXPECT_EQ(changed_inputs(*journal, scene).size(), 0U);
     scene.inputs[0].hash = "00000000000000bb";
@@ -113,7 +113,7 @@ TEST(Journal, refuses_what_is_none_naming_key_and_value) {
                     {"height_m", 2},
                     {"thickness_m", 1}});
     act(*scenario, {{"action", "undo"}});
-    const json good = scenario->journal_json();
+    const json good = journal_json(*scenario);
     const auto error_of = [&](const std::string& pointer, const json& value) {
         json bad = good;
         bad[json::json_pointer(pointer)] = value;
@@ -148,7 +148,7 @@ TEST(Journal, refuses_unknown_keys_and_names_the_nearest) {
                     {"height_m", 2},
                     {"thickness_m", 1}});
     act(*scenario, {{"action", "undo"}});
-    const json good = scenario->journal_json();
+    const json good = journal_json(*scenario);
     const auto shared = std::make_shared<const scene::Scene>(scene_with_threads(2));
     const auto error_of = [&](const std::string& pointer, const char* key) {
         json bad = good;

@@ -62,7 +62,7 @@ TEST(LiveKeys, are_set_shown_written_and_read_back) {
             EXPECT_EQ(json::parse(write_setup(*again).dump()), written);
             const auto scenario = open(scene);
             act(*scenario, action);
-            EXPECT_EQ(scenario->setup_json()[shape.list].back()[parameter.live], value);
+            EXPECT_EQ(setup_json(*scenario)[shape.list].back()[parameter.live], value);
 
             action[parameter.live] = "much";
             EXPECT_FALSE(read_action(action, setup_of(scene, next), next, context));
@@ -85,8 +85,8 @@ TEST(LiveKeys, of_hydrographs_are_set_shown_written_and_read_back) {
                              {"hydrograph", rows}};
         const auto scenario = open(scene);
         act(*scenario, action);
-        EXPECT_EQ(scenario->setup_json()["inflows"][0]["hydrograph"][1][parameter.key], 3);
-        const json written = scenario->journal_json()["actions"][0]["action"];
+        EXPECT_EQ(setup_json(*scenario)["inflows"][0]["hydrograph"][1][parameter.key], 3);
+        const json written = journal_json(*scenario)["actions"][0]["action"];
         EXPECT_EQ(written["hydrograph"], rows);
         json bad = action;
         bad["hydrograph"][1][parameter.key] = -1;
@@ -101,13 +101,13 @@ TEST(LiveKeys, of_hydrographs_are_set_shown_written_and_read_back) {
 /// `restart` and `talus run` begin alike by themselves; a copy to which the action is applied must, too.
 void expect_one_beginning(const Scenario& origin, const json& action) {
     const scene::Scene& scene = origin.scene();
-    const auto copy = origin.copy();
+    const auto copy = origin.copying()({});
     ASSERT_TRUE(copy) << copy.error().message;
     Scenario& fresh = **copy;
-    const auto setup = read_setup(json::parse(fresh.journal_json()["first_setup"].dump()), scene);
+    const auto setup = read_setup(json::parse(journal_json(fresh)["first_setup"].dump()), scene);
     ASSERT_TRUE(setup) << setup.error().message;
     NextNumbers next{9, 9, 9, 9, 9, 9};
-    const ActionContext context{scene, *scene.spec.solver.particle_spacing, fresh.model().viscosity,
+    const ActionContext context{scene, *scene.spec.solver.particle_spacing, fresh.run().model().viscosity,
                                 [](const std::string&) { return false; }};
     const auto edit = read_action(action, *setup, next, context);
     ASSERT_TRUE(edit) << edit.error().message;
@@ -116,15 +116,15 @@ void expect_one_beginning(const Scenario& origin, const json& action) {
 
     constexpr int steps = 10;
     act(fresh, action);
-    const std::uint64_t begun = fresh.hash();
+    const std::uint64_t begun = hash(fresh);
     for (int step = 0; step < steps; ++step) fresh.advance();
-    const std::uint64_t later = fresh.hash();
+    const std::uint64_t later = hash(fresh);
     act(fresh, {{"action", "restart"}});
-    EXPECT_EQ(begun, fresh.hash()) << "after the restart: " << action;
+    EXPECT_EQ(begun, hash(fresh)) << "after the restart: " << action;
     EXPECT_EQ(begun, hash_state((*run)->state())) << "talus run: " << action;
     for (int step = 0; step < steps; ++step) fresh.advance();
     for (int step = 0; step < steps; ++step) (*run)->advance();
-    EXPECT_EQ(later, fresh.hash()) << "after the restart: " << action;
+    EXPECT_EQ(later, hash(fresh)) << "after the restart: " << action;
     EXPECT_EQ(later, hash_state((*run)->state())) << "talus run: " << action;
 }
 
@@ -184,20 +184,20 @@ TEST(LiveKeys, of_structures_far_from_the_release_change_the_run_in_place) {
     scene.spec.solver.particle_spacing = 0.8;
     add_building(scene, "house", rectangle(west + 38, south + 27, west + 42, south + 33), 6);
     const auto edited = open(scene);
-    const observe::Observer* begun = &edited->observer();
+    const observe::Observer* begun = &edited->run().observer();
     act(*edited,
         {{"action", "put_barrier"}, {"line", {{west + 37, south + 22}, {west + 37, south + 38}}}, {"height_m", 2}});
     act(*edited,
         {{"action", "put_building"}, {"polygon", ring(west + 44, south + 27, west + 48, south + 33)}, {"height_m", 5}});
     act(*edited, {{"action", "put_barrier"}, {"id", "barrier-1"}, {"height_m", 1}});
     act(*edited, {{"action", "remove_building"}, {"id", "building-1"}});
-    EXPECT_EQ(begun, &edited->observer()) << "the run was started anew";
-    const auto again = edited->copy();
+    EXPECT_EQ(begun, &edited->run().observer()) << "the run was started anew";
+    const auto again = edited->copying()({});
     ASSERT_TRUE(again) << again.error().message;
     run_until(*edited, 6);
     run_until(**again, 6);
-    EXPECT_EQ(edited->impacts_json()["barriers"][0]["hit"], true);
-    EXPECT_EQ(edited->hash(), (*again)->hash());
+    EXPECT_EQ(impacts_json(*edited)["barriers"][0]["hit"], true);
+    EXPECT_EQ(hash(*edited), hash(**again));
 }
 
 TEST(LiveKeys, of_older_journals_are_read_to_the_same_setup) {
@@ -217,7 +217,7 @@ TEST(LiveKeys, of_older_journals_are_read_to_the_same_setup) {
                     {"footprint", ring(west + 44, south + 27, west + 48, south + 33)},
                     {"height_m", 5}});
     act(*scenario, {{"action", "restart"}});
-    const json now = json::parse(scenario->journal_json()["first_setup"].dump());
+    const json now = json::parse(journal_json(*scenario)["first_setup"].dump());
     json old = now;
     old["barriers"][0]["height_m"] = 0;  // once beside the elevation of a level crest
     old["barriers"][0].erase("openings");
@@ -261,7 +261,7 @@ TEST(LiveKeys, keep_the_rules_of_the_scene_file) {
     EXPECT_NE(refusal(*scenario, set("material.cohesion_Pa", 10))
                   .find("material.cohesion_Pa: needs solver.internal_friction = \"stress\""),
               std::string::npos);
-    const json about = scenario->scene_json();
+    const json about = scene_json(*scenario);
     EXPECT_EQ(about["settings"]["solver.internal_friction"], "pair");
     for (const json& parameter : about["parameters"]) {
         if (parameter["key"] != "material.viscosity") continue;
@@ -275,7 +275,7 @@ TEST(LiveKeys, take_the_place_of_their_alternatives) {
     const auto scenario = open(scene);
     act(*scenario,
         {{"action", "put_barrier"}, {"line", {{west + 52, south + 8}, {west + 52, south + 52}}}, {"height_m", 5}});
-    const auto barrier = [&] { return scenario->setup_json()["barriers"][0]; };
+    const auto barrier = [&] { return setup_json(*scenario)["barriers"][0]; };
     act(*scenario, {{"action", "put_barrier"}, {"id", "barrier-1"}, {"crest_elevation_m", 15}});
     EXPECT_EQ(barrier()["crest_elevation_m"], 15);
     EXPECT_NE(barrier()["height_m"], 5) << "the mean above the ground";

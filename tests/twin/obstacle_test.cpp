@@ -19,7 +19,7 @@ json barrier(double x, double height, double thickness = 1.2) {
 }
 
 json barrier_impact(const Scenario& scenario) {
-    return scenario.impacts_json()["barriers"][0];
+    return impacts_json(scenario)["barriers"][0];
 }
 
 TEST(Barrier, follows_the_ground_with_joints_that_leave_no_gap) {
@@ -90,7 +90,7 @@ TEST(Barrier, lower_than_the_flow_is_overtopped_by_what_lies_beyond_it) {
 }
 
 double kinetic_energy(const Scenario& scenario) {
-    const json series = scenario.series_json();
+    const json series = series_json(scenario);
     return series["time"]["kinetic_energy_J"].back().get<double>();
 }
 
@@ -133,7 +133,7 @@ TEST(Barrier, moved_begins_its_record_anew_and_removed_lets_go_what_it_held) {
     run_until(*scenario, 16);
     EXPECT_GT(number(*scenario, "front_chainage_m"), front + 5) << "what it held lies on a slope of 30 degrees";
     act(*scenario, {{"action", "remove_barrier"}, {"id", id}});
-    EXPECT_EQ(scenario->impacts_json()["barriers"].size(), 0U);
+    EXPECT_EQ(impacts_json(*scenario)["barriers"].size(), 0U);
     scenario->advance();
 }
 
@@ -153,7 +153,7 @@ TEST(Obstacle, taken_away_stays_in_tables_and_report_with_the_time_of_it) {
     const double time = scenario->time();
     run_until(*scenario, 7);
 
-    const json removed = scenario->impacts_json()["removed"];
+    const json removed = impacts_json(*scenario)["removed"];
     ASSERT_EQ(removed.size(), 2U) << "what came and went between two steps was never there: " << removed;
     EXPECT_EQ(removed[0]["kind"], "building");
     EXPECT_EQ(removed[0]["hit"], true);
@@ -163,7 +163,7 @@ TEST(Obstacle, taken_away_stays_in_tables_and_report_with_the_time_of_it) {
         EXPECT_EQ(removed[1][key], then[key]) << key;
 
     talus::test::TemporaryFolder folder;
-    ASSERT_TRUE(scenario->products()(folder.path()));
+    ASSERT_TRUE(products_of(*scenario)(folder.path()));
     const std::string table = talus::test::read_text(folder.file("buildings.csv"));
     EXPECT_THAT(table, HasSubstr("\nhouse,yes,"));
     EXPECT_THAT(table, HasSubstr("\nbarrier 2,yes,"));
@@ -176,7 +176,7 @@ TEST(Obstacle, taken_away_stays_in_tables_and_report_with_the_time_of_it) {
     // Back again it stands, and is told as what stands.
     act(*scenario, {{"action", "undo"}});
     act(*scenario, {{"action", "undo"}});
-    EXPECT_EQ(scenario->impacts_json()["removed"].size(), 0U);
+    EXPECT_EQ(impacts_json(*scenario)["removed"].size(), 0U);
     EXPECT_EQ(barrier_impact(*scenario)["hit"], true);
 }
 
@@ -188,16 +188,16 @@ TEST(Obstacle, impacts_of_an_earlier_time_are_those_that_were_told_then) {
     std::vector<std::pair<double, json>> told;
     for (double time = 0.5; time < 9; time += 1.5) {
         run_until(*scenario, time);
-        const std::size_t frames = scenario->recording_json()["times_s"].size();
-        while (scenario->recording_json()["times_s"].size() == frames) scenario->advance();
-        told.emplace_back(scenario->time(), scenario->impacts_json());
+        const std::size_t frames = recording_json(*scenario)["times_s"].size();
+        while (recording_json(*scenario)["times_s"].size() == frames) scenario->advance();
+        told.emplace_back(scenario->time(), impacts_json(*scenario));
     }
     ASSERT_EQ(told.front().second["barriers"][0]["hit"], false);
     ASSERT_GT(told.back().second["barriers"][0]["overtopped_m3"], 1);
     ASSERT_EQ(told.back().second["buildings"][0]["hit"], true);
     for (const auto& [time, impacts] : told) {
-        EXPECT_EQ(scenario->impacts_json(time), impacts) << time;
-        EXPECT_EQ(scenario->impacts_json(time + 0.05), impacts) << "until the next frame";
+        EXPECT_EQ(impacts_json(*scenario, time), impacts) << time;
+        EXPECT_EQ(impacts_json(*scenario, time + 0.05), impacts) << "until the next frame";
     }
 }
 
@@ -227,7 +227,7 @@ TEST(Building, is_put_moved_and_removed_also_one_of_the_scene) {
     scene::Scene scene = channel_scene();
     add_building(scene, "house", rectangle(west + 60, south + 27, west + 66, south + 33), 6);
     const auto scenario = open(scene);
-    EXPECT_EQ(scenario->setup_json()["buildings"][0]["id"], "building-1");
+    EXPECT_EQ(setup_json(*scenario)["buildings"][0]["id"], "building-1");
     const std::string id = act(*scenario, {{"action", "put_building"},
                                            {"name", "shed"},
                                            {"polygon", ring(west + 35, south + 27, west + 38, south + 33)},
@@ -235,26 +235,26 @@ TEST(Building, is_put_moved_and_removed_also_one_of_the_scene) {
                                .created;
     EXPECT_EQ(id, "building-2");
     run_until(*scenario, 4);
-    json impacts = scenario->impacts_json()["buildings"];
+    json impacts = impacts_json(*scenario)["buildings"];
     EXPECT_EQ(impacts[1]["name"], "shed");
     EXPECT_EQ(impacts[1]["hit"], true);
     act(*scenario, {{"action", "remove_building"}, {"id", id}});
     act(*scenario, {{"action", "put_building"},
                     {"id", "building-1"},
                     {"polygon", ring(west + 45, south + 24, west + 49, south + 36)}});
-    const json house = scenario->setup_json()["buildings"][0];
+    const json house = setup_json(*scenario)["buildings"][0];
     EXPECT_EQ(house["height_m"], 6);
     EXPECT_EQ(house["from_scene"], true);
     EXPECT_NEAR(house["base_m"].get<double>(), 3 * std::tan(M_PI / 6), 0.7);
     run_until(*scenario, 7);
-    impacts = scenario->impacts_json()["buildings"];
+    impacts = impacts_json(*scenario)["buildings"];
     ASSERT_EQ(impacts.size(), 1U);
     EXPECT_EQ(impacts[0]["hit"], true);
     ASSERT_EQ(scenario->phase(), run::RunPhase::ready) << scenario->message();
     // Back again, with what had hit it.
     act(*scenario, {{"action", "undo"}});
     act(*scenario, {{"action", "undo"}});
-    impacts = scenario->impacts_json()["buildings"];
+    impacts = impacts_json(*scenario)["buildings"];
     ASSERT_EQ(impacts.size(), 2U);
     EXPECT_EQ(impacts[1]["hit"], true);
     EXPECT_THAT(refusal(*scenario, {{"action", "put_building"}, {"polygon", ring(0, 0, 5, 5)}, {"height_m", 3}}),
@@ -270,9 +270,9 @@ TEST(Building, of_several_parts_with_a_courtyard_moves_as_a_whole) {
     farm.footprint[0].holes.push_back(rectangle(west + 63, south + 28, west + 67, south + 32).outer);
     farm.footprint.push_back(rectangle(west + 72, south + 27, west + 75, south + 33));
     const auto scenario = open(scene);
-    const json before = scenario->setup_json()["buildings"][0];
+    const json before = setup_json(*scenario)["buildings"][0];
     act(*scenario, {{"action", "put_building"}, {"id", "building-1"}, {"move_m", {-20, 1.5}}});
-    const json after = scenario->setup_json()["buildings"][0];
+    const json after = setup_json(*scenario)["buildings"][0];
     ASSERT_EQ(after["polygons"].size(), 2U);
     ASSERT_EQ(after["polygons"][0].size(), 2U);
     for (std::size_t part = 0; part < 2; ++part) {
@@ -288,9 +288,9 @@ TEST(Building, of_several_parts_with_a_courtyard_moves_as_a_whole) {
     EXPECT_EQ(after["height_m"], 6);
     EXPECT_GT(after["base_m"].get<double>(), before["base_m"].get<double>() + 2);  // uphill
     run_until(*scenario, 4);
-    EXPECT_EQ(scenario->impacts_json()["buildings"][0]["hit"], true);
+    EXPECT_EQ(impacts_json(*scenario)["buildings"][0]["hit"], true);
     act(*scenario, {{"action", "undo"}});
-    EXPECT_EQ(scenario->setup_json()["buildings"][0], before);
+    EXPECT_EQ(setup_json(*scenario)["buildings"][0], before);
 
     const auto put = [](const json& keys) {
         json action = {{"action", "put_building"}};
@@ -305,7 +305,7 @@ TEST(Building, of_several_parts_with_a_courtyard_moves_as_a_whole) {
                                         {"move_m", {1, 1}},
                                         {"polygon", ring(west + 60, south + 24, west + 70, south + 36)}})),
                 HasSubstr("cannot go with polygon"));
-    EXPECT_EQ(scenario->setup_json()["buildings"][0], before);
+    EXPECT_EQ(setup_json(*scenario)["buildings"][0], before);
 }
 
 }  // namespace

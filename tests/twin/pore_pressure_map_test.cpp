@@ -40,10 +40,10 @@ TEST(PorePressureMap, is_that_of_the_debris_now_and_then) {
     act(*scenario, {{"action", "set_parameter"}, {"key", "material.pore_pressure_ratio"}, {"value", 0.6}});
     run_until(*scenario, 3);
     EXPECT_NEAR(spread_of(layer(*scenario, ratio)).greatest, 0.6, 0.003);
-    const Spread then = spread_of((*scenario->layer(ratio, 1.5))());
+    const Spread then = spread_of((*layer_of(*scenario, ratio, 1.5))());
     EXPECT_NEAR(then.greatest, 0.4, 0.003);
     EXPECT_GT(then.cells, 20);
-    EXPECT_EQ(scenario->state_json()["pore_pressure"], true);
+    EXPECT_EQ(state_json(*scenario)["pore_pressure"], true);
 }
 
 TEST(PorePressureMap, has_the_state_of_soil_whose_pressure_evolves) {
@@ -70,18 +70,18 @@ TEST(PorePressureMap, has_the_state_of_soil_whose_pressure_evolves) {
     const int columns = depth.geometry.columns;
     const PlanPoint there =
         depth.geometry.centre(static_cast<int>(deepest) % columns, static_cast<int>(deepest) / columns);
-    const json series = scenario->probe(there)();
+    const json series = probe_at(*scenario, there)();
     ASSERT_EQ(series[ratio].size(), series["time_s"].size());
     EXPECT_NEAR(series[ratio].back().get<double>(), now.greatest, 0.4);
-    EXPECT_TRUE(scenario->probe({west + 1, south + 1})()[ratio].back().is_null()) << "no debris has been there";
+    EXPECT_TRUE(probe_at(*scenario, {west + 1, south + 1})()[ratio].back().is_null()) << "no debris has been there";
 }
 
 TEST(PorePressureMap, of_debris_without_pore_pressure_is_empty) {
     const auto scenario = open(channel_scene());
     run_until(*scenario, 1);
     EXPECT_EQ(spread_of(layer(*scenario, ratio)).cells, 0);
-    EXPECT_EQ(scenario->state_json()["pore_pressure"], false);
-    EXPECT_TRUE(scenario->probe({west + 12, south + 30})()[ratio].back().is_null());
+    EXPECT_EQ(state_json(*scenario)["pore_pressure"], false);
+    EXPECT_TRUE(probe_at(*scenario, {west + 12, south + 30})()[ratio].back().is_null());
 }
 
 }  // namespace

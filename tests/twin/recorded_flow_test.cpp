@@ -68,7 +68,7 @@ TEST(RecordedFlow, has_the_debris_that_a_run_writes_of_the_same_times) {
     ASSERT_THAT(series.finish(*result), ::testing::IsEmpty());
 
     std::filesystem::create_directory(folder.path() / "live");
-    const auto flow = live->flow();
+    const auto flow = recorded_flow_of(*live);
     const json offer = flow->describe(1);
     double told = 0;
     const Status written = flow->write({"gltf"}, 1, folder.path() / "live", [&](double share) {
@@ -108,7 +108,7 @@ TEST(RecordedFlow, shows_a_change_on_the_way) {
     run_until(*changed, 6);
     const auto easternmost = [&](const Scenario& scenario, const char* name) {
         std::filesystem::create_directory(folder.path() / name);
-        EXPECT_TRUE(scenario.flow()->write({"gltf"}, 1, folder.path() / name, never_ends));
+        EXPECT_TRUE(recorded_flow_of(scenario)->write({"gltf"}, 1, folder.path() / name, never_ends));
         const geo::GltfFile glb = opened(folder.path() / name / "run.glb");
         const json last = debris_in(glb).back();
         return glb.root()["accessors"][last["primitives"][0]["attributes"]["POSITION"].get<std::size_t>()]["max"][0]
@@ -121,10 +121,11 @@ TEST(RecordedFlow, writes_maps_and_a_tileset_beside_the_animation) {
     const talus::test::TemporaryFolder folder;
     const auto live = open(channel_scene());
     run_until(*live, 2);
-    const Status local = live->flow()->write({"3dtiles"}, 1, folder.path(), never_ends);
+    const Status local = recorded_flow_of(*live)->write({"3dtiles"}, 1, folder.path(), never_ends);
     ASSERT_FALSE(local);
     EXPECT_THAT(local.error().message, HasSubstr("local"));
-    const Status written = live->flow()->write({"gltf", "geotiff", "netcdf"}, 0.5, folder.path(), never_ends);
+    const Status written =
+        recorded_flow_of(*live)->write({"gltf", "geotiff", "netcdf"}, 0.5, folder.path(), never_ends);
     ASSERT_TRUE(written) << written.error().message;
     std::vector<std::string> names;
     for (const auto& entry : std::filesystem::directory_iterator(folder.path())) {
@@ -139,7 +140,7 @@ TEST(RecordedFlow, ends_when_it_is_cancelled) {
     run_until(*live, 3);
     for (const double limit : {0.0, 0.05, 0.5}) {
         int asked_after = 0;
-        const Status ended = live->flow()->write({"gltf", "netcdf"}, 0.1, folder.path(), [&](double share) {
+        const Status ended = recorded_flow_of(*live)->write({"gltf", "netcdf"}, 0.1, folder.path(), [&](double share) {
             asked_after += share > limit;
             return share <= limit;
         });
@@ -152,11 +153,11 @@ TEST(RecordedFlow, ends_when_it_is_cancelled) {
 
 TEST(RecordedFlow, is_refused_with_the_reason) {
     const auto live = open(channel_scene());
-    const json before = live->flow()->describe(1);
+    const json before = recorded_flow_of(*live)->describe(1);
     EXPECT_THAT(before["formats"][0]["refused"], HasSubstr("nothing has moved yet"));
-    EXPECT_THAT(live->flow()->check({"gltf"}, 1).error().message, HasSubstr("nothing has moved yet"));
+    EXPECT_THAT(recorded_flow_of(*live)->check({"gltf"}, 1).error().message, HasSubstr("nothing has moved yet"));
     run_until(*live, 1);
-    const auto flow = live->flow();
+    const auto flow = recorded_flow_of(*live);
     EXPECT_TRUE(flow->describe(1)["formats"][0]["refused"].is_null());
     EXPECT_THAT(flow->describe(1)["formats"][1]["refused"], HasSubstr("local"));
     EXPECT_THAT(flow->check({}, 1).error().message, HasSubstr("at least one"));

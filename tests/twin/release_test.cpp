@@ -17,7 +17,7 @@ json drawn(double x_min, double thickness) {
 }
 
 json release_of(const Scenario& scenario, const std::string& id) {
-    const json setup = scenario.setup_json();
+    const json setup = setup_json(scenario);
     for (const json& release : setup["releases"]) {
         if (release["id"] == id) return release;
     }
@@ -75,7 +75,7 @@ TEST(DrawnRelease, follows_its_outline_while_held_without_using_up_ids) {
     const double volume = release_of(*scenario, id)["volume_m3"];
     const auto slots = [&] {
         std::uint32_t n = 0;
-        std::memcpy(&n, encode(*scenario->frame(1, 0), 0).data() + 24, sizeof n);
+        std::memcpy(&n, encode(*scenario->run().frame(1, 0), 0).data() + 24, sizeof n);
         return n;
     };
     const std::uint32_t before = slots();
@@ -117,14 +117,14 @@ TEST(Release, removed_while_it_moves_is_taken_away_and_the_rest_goes_on) {
     act(*scenario, {{"action", "trigger_release"}, {"id", id}});
     run_until(*scenario, 1);
     const double all = number(*scenario, "volume_released_m3");
-    const std::string frame = encode(*scenario->frame(1, 0), 0);
+    const std::string frame = encode(*scenario->run().frame(1, 0), 0);
     act(*scenario, {{"action", "remove_release"}, {"id", "release-1"}});
     expect_balance(*scenario);
     EXPECT_LT(number(*scenario, "volume_released_m3"), 0.5 * all);
     run_until(*scenario, 2);
     expect_balance(*scenario);
     EXPECT_NE(scenario->phase(), run::RunPhase::fault) << scenario->message();
-    const json series = scenario->series_json();
+    const json series = series_json(*scenario);
     for (const json& row : series["time"]["volume_released_m3"]) EXPECT_GT(row.get<double>(), 0);
     // Undone, it is back where it was and starts again.
     act(*scenario, {{"action", "undo"}});

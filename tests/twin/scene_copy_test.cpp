@@ -27,7 +27,7 @@ class SceneCopyTest : public scene::SceneFolder {
     ~SceneCopyTest() override { std::filesystem::current_path(before_); }
 
     [[nodiscard]] Result<SceneCopy> copied() const {
-        return scenario_->copy_of_scene()(std::filesystem::absolute("scene.toml"), {});
+        return scene_copy_of(*scenario_)(std::filesystem::absolute("scene.toml"), {});
     }
     std::string draw(double x) {
         return act(*scenario_, {{"action", "put_release"},
@@ -54,7 +54,7 @@ TEST_F(SceneCopyTest, has_whole_paths_of_releases_beside_one_that_was_drawn) {
 
 TEST_F(SceneCopyTest, leaves_out_triggers_of_what_is_gone) {
     act(*scenario_, {{"action", "trigger_release"}, {"id", draw(80)}});
-    act(*scenario_, {{"action", "remove_release"}, {"id", scenario_->setup_json()["releases"][0]["id"]}});
+    act(*scenario_, {{"action", "remove_release"}, {"id", setup_json(*scenario_)["releases"][0]["id"]}});
     const auto copy = copied();
     ASSERT_TRUE(copy) << copy.error().message;
     EXPECT_THAT(copy->text, HasSubstr("Left out: trigger \"tilt\""));
@@ -63,7 +63,7 @@ TEST_F(SceneCopyTest, leaves_out_triggers_of_what_is_gone) {
 
 TEST_F(SceneCopyTest, of_a_setup_without_debris_is_refused) {
     (void)draw(80);
-    act(*scenario_, {{"action", "remove_release"}, {"id", scenario_->setup_json()["releases"][0]["id"]}});
+    act(*scenario_, {{"action", "remove_release"}, {"id", setup_json(*scenario_)["releases"][0]["id"]}});
     const auto copy = copied();
     ASSERT_FALSE(copy);
     EXPECT_THAT(copy.error().message, HasSubstr("no release was triggered"));

@@ -21,7 +21,7 @@ scene::Scene dammed_scene(std::optional<double> resistance = {}) {
 
 TEST(SceneBarrier, is_shown_edited_and_removed_like_a_drawn_one) {
     const auto scenario = open(dammed_scene());
-    json setup = scenario->setup_json();
+    json setup = setup_json(*scenario);
     ASSERT_EQ(setup["buildings"].size(), 1U);
     ASSERT_EQ(setup["barriers"].size(), 1U);
     const json& dam = setup["barriers"][0];
@@ -31,21 +31,21 @@ TEST(SceneBarrier, is_shown_edited_and_removed_like_a_drawn_one) {
     EXPECT_EQ(dam["resistance_Npm"], nullptr);
     const std::string id = dam["id"];
     act(*scenario, {{"action", "put_barrier"}, {"id", id}, {"height_m", 3}, {"resistance_Npm", 5000}});
-    setup = scenario->setup_json();
+    setup = setup_json(*scenario);
     EXPECT_EQ(setup["barriers"][0]["height_m"], 3);
     EXPECT_EQ(setup["barriers"][0]["resistance_Npm"], 5000);
     EXPECT_EQ(setup["barriers"][0]["openings"].size(), 1U) << "the slot stays";
     act(*scenario, {{"action", "remove_barrier"}, {"id", id}});
-    EXPECT_EQ(scenario->setup_json()["barriers"].size(), 0U);
+    EXPECT_EQ(setup_json(*scenario)["barriers"].size(), 0U);
     act(*scenario, {{"action", "undo"}});
-    EXPECT_EQ(scenario->setup_json()["barriers"].size(), 1U);
+    EXPECT_EQ(setup_json(*scenario)["barriers"].size(), 1U);
 }
 
 TEST(SceneBarrier, lets_through_its_slot_what_is_counted_as_passed) {
     const auto scenario = open(dammed_scene());
     run_until(*scenario, 10);
     ASSERT_NE(scenario->phase(), run::RunPhase::fault) << scenario->message();
-    const json dam = scenario->impacts_json()["barriers"][0];
+    const json dam = impacts_json(*scenario)["barriers"][0];
     EXPECT_EQ(dam["hit"], true);
     EXPECT_GT(dam["impulse_kNs"], 0);
     EXPECT_GT(dam["passed_m3"], 1);
@@ -58,29 +58,29 @@ TEST(Resistance, exceeded_takes_the_dam_away_once_and_replays_to_the_same_hash) 
     const auto scenario = open(dammed_scene(weak));
     run_until(*scenario, 6);
     ASSERT_NE(scenario->phase(), run::RunPhase::fault) << scenario->message();
-    const json dam = scenario->impacts_json()["barriers"][0];
+    const json dam = impacts_json(*scenario)["barriers"][0];
     ASSERT_NE(dam["failed_s"], nullptr);
     EXPECT_GE(dam["failed_s"], dam["first_hit_s"]);
     // Another edit does not put it up again.
     act(*scenario, {{"action", "set_parameter"}, {"key", "material.friction_coefficient"}, {"value", 0.2}});
     run_until(*scenario, 9);
-    EXPECT_EQ(scenario->impacts_json()["barriers"][0]["failed_s"], dam["failed_s"]);
+    EXPECT_EQ(impacts_json(*scenario)["barriers"][0]["failed_s"], dam["failed_s"]);
     EXPECT_GT(number(*scenario, "front_chainage_m"), 60);
 
-    const auto journal = read_journal(scenario->journal_json().dump());
+    const auto journal = read_journal(journal_json(*scenario).dump());
     ASSERT_TRUE(journal) << journal.error().message;
     const auto again = replay(*journal, std::make_shared<const scene::Scene>(dammed_scene(weak)));
     ASSERT_TRUE(again) << again.error().message;
     EXPECT_EQ(again->hash, journal->hash);
 
     act(*scenario, {{"action", "restart"}});
-    EXPECT_EQ(scenario->impacts_json()["barriers"][0]["failed_s"], nullptr) << "it stands again";
+    EXPECT_EQ(impacts_json(*scenario)["barriers"][0]["failed_s"], nullptr) << "it stands again";
 }
 
 TEST(Net, is_drawn_opened_closed_and_made_a_wall) {
     const auto scenario = open(dammed_scene());
-    const std::string id = scenario->setup_json()["barriers"][0]["id"];
-    const auto net = [&] { return scenario->setup_json()["barriers"][0]; };
+    const std::string id = setup_json(*scenario)["barriers"][0]["id"];
+    const auto net = [&] { return setup_json(*scenario)["barriers"][0]; };
     EXPECT_EQ(net()["passing_share"], nullptr);
     act(*scenario, {{"action", "put_barrier"}, {"id", id}, {"passing_share", 0.4}, {"openings", json::array()}});
     EXPECT_EQ(net()["passing_share"], 0.4);
@@ -109,7 +109,7 @@ TEST(Net, is_drawn_opened_closed_and_made_a_wall) {
 
 TEST(Net, lets_through_and_holds_in_the_live_twin_and_replays_to_the_same_hash) {
     const auto scenario = open(dammed_scene());
-    const std::string id = scenario->setup_json()["barriers"][0]["id"];
+    const std::string id = setup_json(*scenario)["barriers"][0]["id"];
     act(*scenario, {{"action", "put_barrier"}, {"id", id}, {"passing_share", 0.6}, {"openings", json::array()}});
     run_until(*scenario, 5);
     // Another one behind it, as debris comes down.
@@ -121,12 +121,12 @@ TEST(Net, lets_through_and_holds_in_the_live_twin_and_replays_to_the_same_hash) 
     run_until(*scenario, 10);
     ASSERT_NE(scenario->phase(), run::RunPhase::fault) << scenario->message();
     expect_balance(*scenario);
-    const json net = scenario->impacts_json()["barriers"][0];
+    const json net = impacts_json(*scenario)["barriers"][0];
     EXPECT_EQ(net["hit"], true);
     EXPECT_GT(net["passed_m3"], 0.5);
     EXPECT_GT(net["retained_m3"], 1);
     EXPECT_GT(net["peak_force_kN"], 0);
-    const auto journal = read_journal(scenario->journal_json().dump());
+    const auto journal = read_journal(journal_json(*scenario).dump());
     ASSERT_TRUE(journal) << journal.error().message;
     const auto again = replay(*journal, std::make_shared<const scene::Scene>(dammed_scene()));
     ASSERT_TRUE(again) << again.error().message;
@@ -172,7 +172,7 @@ TEST(Clearance, lets_debris_pass_below_the_net_as_if_it_were_not_there) {
         ASSERT_NE(scenario->phase(), run::RunPhase::fault) << scenario->message();
         expect_balance(*scenario);
     }
-    const json closed = held->impacts_json()["barriers"][0], gap = open_below->impacts_json()["barriers"][0];
+    const json closed = impacts_json(*held)["barriers"][0], gap = impacts_json(*open_below)["barriers"][0];
     EXPECT_EQ(closed["passed_m3"], 0);
     EXPECT_GT(closed["retained_m3"], 5);
     EXPECT_GT(gap["passed_m3"].get<double>() + gap["retained_m3"].get<double>(), 5);
@@ -202,18 +202,18 @@ TEST(Inflow, over_an_area_with_a_density_runs_live_and_again_after_a_restart) {
     EXPECT_NEAR(number(*scenario, "volume_released_m3"), 36, 3);
     expect_balance(*scenario);
     bool any = false;
-    const auto series = scenario->probe({west + 27, south + 29})();
+    const auto series = probe_at(*scenario, {west + 27, south + 29})();
     for (std::size_t k = 0; k < series["speed_mps"].size(); ++k) {
         const double speed = series["speed_mps"][k];
         any = any || speed > 0.1;
         EXPECT_NEAR(series["pressure_kPa"][k], 1200 * speed * speed / 1e3, 1e-4 * (1 + speed * speed));
     }
     EXPECT_TRUE(any);
-    const std::uint64_t hash = scenario->hash();
+    const std::uint64_t hash = hash(*scenario);
     const std::uint64_t step = scenario->step();
     act(*scenario, {{"action", "restart"}});
     while (scenario->step() < step) scenario->advance();
-    EXPECT_EQ(scenario->hash(), hash);
+    EXPECT_EQ(hash(*scenario), hash);
 }
 
 TEST(Inflow, runs_live_and_again_after_a_restart) {
@@ -226,11 +226,11 @@ TEST(Inflow, runs_live_and_again_after_a_restart) {
     const double volume = number(*scenario, "volume_released_m3");
     EXPECT_NEAR(volume, 36, 3);
     expect_balance(*scenario);
-    const std::uint64_t hash = scenario->hash();
+    const std::uint64_t hash = hash(*scenario);
     const std::uint64_t step = scenario->step();
     act(*scenario, {{"action", "restart"}});
     while (scenario->step() < step) scenario->advance();
-    EXPECT_EQ(scenario->hash(), hash);
+    EXPECT_EQ(hash(*scenario), hash);
 }
 
 }  // namespace

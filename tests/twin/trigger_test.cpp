@@ -59,18 +59,18 @@ TEST(Trigger, starts_with_its_own_source_and_the_values_of_the_message) {
     const auto scenario = open(gauged_scene());
     const Done done = act(*scenario, start("scar", {{"volume_m3", 20}, {"pore_pressure_ratio", 0.3}}));
     EXPECT_THAT(done.sentence, HasSubstr("started by trigger \"scar\", volume 20 m3, pore pressure ratio 0.3"));
-    const json setup = scenario->setup_json();
+    const json setup = setup_json(*scenario);
     // The second scar belongs to no trigger and takes part; the stream belongs to another one.
     ASSERT_EQ(setup["releases"].size(), 2);
     EXPECT_NEAR(setup["releases"][0]["volume_m3"].get<double>(), 20, 1e-6);
     EXPECT_EQ(setup["inflows"].size(), 0);
-    ASSERT_NE(scenario->trigger(), nullptr);
-    EXPECT_EQ((*scenario->trigger())["values"]["volume_m3"], 20);
+    ASSERT_NE(started_by(*scenario), nullptr);
+    EXPECT_EQ((*started_by(*scenario))["values"]["volume_m3"], 20);
     EXPECT_EQ(setup["undo"], nullptr);
     run_until(*scenario, 1);
     EXPECT_THAT(refusal(*scenario, start("scar", json::object())), HasSubstr("has begun"));
     act(*scenario, {{"action", "restart"}});
-    EXPECT_EQ(scenario->trigger(), nullptr);
+    EXPECT_EQ(started_by(*scenario), nullptr);
 }
 
 TEST(Trigger, refuses_values_outside_the_limits_of_the_scene) {
@@ -129,7 +129,7 @@ void play(Scenario& scenario) {
 TEST(Trigger, a_gauge_feeds_the_inflow_of_the_run_and_its_silence_ends_it) {
     const auto scenario = open(gauged_scene());
     play(*scenario);
-    const json setup = scenario->setup_json();
+    const json setup = setup_json(*scenario);
     EXPECT_EQ(setup["pending_restart"], false);
     EXPECT_EQ(setup["inflows"][0]["in_force"], true);
     ASSERT_EQ(setup["inflows"].size(), 1);
@@ -157,13 +157,13 @@ TEST(Trigger, a_gauge_feeds_the_inflow_of_the_run_and_its_silence_ends_it) {
 TEST(Trigger, replays_to_the_same_hash_with_every_value_of_the_gauge) {
     const auto scenario = open(gauged_scene());
     play(*scenario);
-    const auto journal = read_journal(scenario->journal_json().dump());
+    const auto journal = read_journal(journal_json(*scenario).dump());
     ASSERT_TRUE(journal) << journal.error().message;
     for (const int threads : {1, 2}) {
         const auto again = replay(*journal, std::make_shared<const scene::Scene>(gauged_scene(threads)));
         ASSERT_TRUE(again) << again.error().message;
-        EXPECT_EQ(again->hash, to_hex(scenario->hash()));
-        EXPECT_EQ(again->scenario->setup_json()["inflows"], scenario->setup_json()["inflows"]);
+        EXPECT_EQ(again->hash, to_hex(hash(*scenario)));
+        EXPECT_EQ(setup_json(*again->scenario)["inflows"], setup_json(*scenario)["inflows"]);
     }
     Journal other = *journal;
     ASSERT_EQ(other.entries[1].action["action"], "gauge");

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cmath>
+#include <cstdint>
 #include <functional>
 #include <memory>
 #include <string>
@@ -11,6 +12,9 @@
 
 #include "support/value_of.hpp"
 #include "terrain/release.hpp"
+#include "twin/answers.hpp"
+#include "twin/live_run.hpp"
+#include "twin/results.hpp"
 #include "twin/scenario.hpp"
 
 /// Small scenes, made without files.
@@ -83,17 +87,17 @@ inline Done act(Scenario& scenario, const json& action) {
 
 /// The error; nothing may have changed.
 inline std::string refusal(Scenario& scenario, const json& action) {
-    const json setup = scenario.setup_json(), state = scenario.state_json();
+    const json setup = setup_json(scenario), state = state_json(scenario);
     const Result<Done> done = scenario.apply(action, "Ann");
     EXPECT_FALSE(done) << action;
-    EXPECT_EQ(scenario.setup_json(), setup);
-    EXPECT_EQ(scenario.state_json(), state);
+    EXPECT_EQ(setup_json(scenario), setup);
+    EXPECT_EQ(state_json(scenario), state);
     return done ? "" : done.error().message;
 }
 
 /// released + entrained = held + moving + deposited + left.
 inline void expect_balance(const Scenario& scenario) {
-    const json s = scenario.state_json();
+    const json s = state_json(scenario);
     const double sum = s["volume_held_m3"].get<double>() + s["volume_moving_m3"].get<double>() +
                        s["volume_deposited_m3"].get<double>() + s["volume_left_m3"].get<double>();
     EXPECT_NEAR(s["volume_released_m3"].get<double>() + s["volume_entrained_m3"].get<double>(), sum, 1e-9 * sum);
@@ -101,12 +105,17 @@ inline void expect_balance(const Scenario& scenario) {
 
 /// A layer as it is now.
 inline Grid<float> layer(const Scenario& scenario, const char* name) {
-    return (*scenario.layer(name))();
+    return (*layer_of(scenario, name))();
+}
+
+/// Of the state, as in the journal.
+inline std::uint64_t hash(const Scenario& scenario) {
+    return hash_state(scenario.run().state());
 }
 
 /// A number of the state.
 inline double number(const Scenario& scenario, const char* key) {
-    return scenario.state_json().at(key).get<double>();
+    return state_json(scenario).at(key).get<double>();
 }
 
 }  // namespace talus::twin::test

@@ -65,15 +65,15 @@ TEST(ZoneBlocks, are_told_of_a_forest_from_a_raster_alone) {
     scene.zones.back().spec.stem_density = 0;
     scene.zones.back().spec.friction_coefficient = 0.4;
     const auto scenario = open(std::move(scene));
-    const json zones = scenario->setup_json()["zones"];
+    const json zones = setup_json(*scenario)["zones"];
     EXPECT_EQ(zones[0]["blocks"], json({{west + 60, south, 20, 60}}));
     EXPECT_TRUE(zones[0]["polygons"].empty());
     EXPECT_FALSE(zones[1].contains("blocks")) << zones[1];
-    EXPECT_EQ(scenario->setup_json()["zones"], zones) << "as they were found before";
+    EXPECT_EQ(setup_json(*scenario)["zones"], zones) << "as they were found before";
     act(*scenario, {{"action", "remove_zone"}, {"id", zones[0]["id"]}});
-    EXPECT_FALSE(scenario->setup_json()["zones"][0].contains("blocks"));
+    EXPECT_FALSE(setup_json(*scenario)["zones"][0].contains("blocks"));
     act(*scenario, {{"action", "undo"}});
-    EXPECT_EQ(scenario->setup_json()["zones"], zones);
+    EXPECT_EQ(setup_json(*scenario)["zones"], zones);
 }
 
 }  // namespace

@@ -1,8 +1,9 @@
-// The scenario's answers, as docs/protocol.md has them.
+#include "twin/answers.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
-#include <filesystem>
+#include <memory>
 #include <utility>
 
 #include <fmt/format.h>
@@ -16,7 +17,8 @@
 #include "scene/depth_averaged_keys.hpp"
 #include "scene/viscosity_limit.hpp"
 #include "twin/gauges_json.hpp"
-#include "twin/json_keys.hpp"
+#include "twin/journal.hpp"
+#include "twin/kinds.hpp"
 #include "twin/pore_pressure_map.hpp"
 #include "twin/scenario_parts.hpp"
 #include "twin/table_entry.hpp"
@@ -25,6 +27,20 @@ namespace talus::twin {
 namespace {
 
 using nlohmann::json;
+
+const char* phase_name(run::RunPhase phase) {
+    switch (phase) {
+        case run::RunPhase::ready:
+            return "ready";
+        case run::RunPhase::at_rest:
+            return "at_rest";
+        case run::RunPhase::ended:
+            return "ended";
+        case run::RunPhase::fault:
+            return "fault";
+    }
+    return "";
+}
 
 json range_json(const params::Range& range) {
     return {{"low", number_or_null<json>(range.low)},
@@ -167,9 +183,9 @@ json impact_json(const std::string& id, const observe::BuildingImpact& impact, b
 
 }  // namespace
 
-json Scenario::scene_json() const {
-    const scene::Scene& scene = this->scene();
-    const LiveRun& run = *parts_->run;
+json scene_json(const Scenario& scenario) {
+    const scene::Scene& scene = scenario.scene();
+    const LiveRun& run = scenario.run();
     const sim::Model& model = run.model();
     const WorldPoint origin = run.ground().terrain.frame().origin;
     const Extent e = scene.terrain.elevation().geometry.extent();
@@ -202,7 +218,7 @@ json Scenario::scene_json() const {
             {"table_sections", table_sections_json()},
             {"gauges", gauge_places(scene.gauges)},
             {"cross_sections", section_places(scene.cross_sections)},
-            {"parameters", live_parameters_json(scene, model, parts_->setup().material)},
+            {"parameters", live_parameters_json(scene, model, run.setup().material)},
             {"settings", settings_json(scene)},
             {"intensity", intensity_json(guideline_of(scene))}};
 }
@@ -218,8 +234,8 @@ double peak_speed(const observe::Observer& observer, const sim::State& state) {
 
 }  // namespace
 
-json Scenario::state_json(bool with_hash) const {
-    const LiveRun& run = *parts_->run;
+json state_json(const Scenario& scenario, bool with_hash) {
+    const LiveRun& run = scenario.run();
     const sim::State& state = run.state();
     const observe::TimeSample now = run.observer().sample(run.model(), state);
     const std::vector<observe::FrontSample> front = run.observer().front();
@@ -228,9 +244,9 @@ json Scenario::state_json(bool with_hash) const {
     const bool advances = !front.empty() && state.time - front.back().arrival_time <= lately;
     const std::vector<FramePtr>& frames = run.recording().frames();
     json answer = {{"status", phase_name(run.phase())},
-                   {"message", message()},
+                   {"message", scenario.message()},
                    {"time_s", state.time},
-                   {"end_time_s", scene().spec.solver.end_time},
+                   {"end_time_s", scenario.scene().spec.solver.end_time},
                    {"expected_end_s", number_or_null<json>(run.expected_end().value_or(observe::never))},
                    {"wall_remaining_s", number_or_null<json>(run.wall_remaining().value_or(observe::never))},
                    {"step", state.step},
@@ -253,16 +269,54 @@ json Scenario::state_json(bool with_hash) const {
     for (const observe::NamedNumber& volume : observe::volume_numbers) {
         answer[std::string(volume.key)] = now.*volume.sample;
     }
-    if (with_hash) answer["hash"] = to_hex(hash());
+    if (with_hash) answer["hash"] = to_hex(hash_state(state));
     return with_short_numbers(std::move(answer));
 }
 
-json Scenario::verdict_json() const {
-    return run::verdict_json(parts_->run->verdict_now());
+json verdict_json(const Scenario& scenario) {
+    return run::verdict_json(scenario.run().verdict_now());
 }
 
-json Scenario::series_json() const {
-    const observe::Observer& observer = parts_->run->observer();
+json setup_json(const Scenario& scenario) {
+    const Scenario::Parts& p = scenario.parts();
+    const Setup& setup = p.setup();
+    const Setup& begun_with = p.run->begun_with();
+    json parameters = json::object(), changes = json::array();
+    for (const params::Parameter* parameter : live_parameters()) {
+        parameters["material." + parameter->key] =
+            number_or_null<json>(value_in_force(setup.material, *parameter, p.run->model().viscosity));
+    }
+    for (const Scenario::Parts::ChangeOnTheWay& change : p.changes) {
+        changes.push_back({{"time_s", change.time}, {"by", change.by}, {"sentence", change.sentence}});
+    }
+    json answer = {{"revision", p.revision},
+                   {"changes", changes},
+                   {"parameters", parameters},
+                   {"pending_restart", !begin_alike(setup, begun_with)},
+                   {"undo", p.undo.empty() ? json() : json(p.undo.back().sentence)},
+                   {"redo", p.redo.empty() ? json() : json(p.redo.back().sentence)}};
+    ZoneBlocks blocks;
+    Shown shown{*p.run, p.scene->terrain.elevation().geometry, p.zone_blocks, blocks};
+    for_each_kind([&]<class Kind>(Kind) {
+        json& list = answer[Kind::list] = json::array();
+        for (const auto& entry : setup.*Kind::entries) {
+            json row = Kind::body(*entry.body);
+            row.update(Kind::more(entry, shown));
+            row["id"] = entry.id;
+            if (Kind::origin != Origin::none) row["from_scene"] = entry.scene_index >= 0;
+            if constexpr (Kind::from_time_0) {
+                const auto* begun = find_id(begun_with.*Kind::entries, entry.id);
+                row["in_force"] = begun != nullptr && same_shape(begun->body, entry.body);
+            }
+            list.push_back(std::move(row));
+        }
+    });
+    p.zone_blocks = std::move(blocks);
+    return answer;
+}
+
+json series_json(const Scenario& scenario) {
+    const observe::Observer& observer = scenario.run().observer();
     const std::vector<observe::TimeSample>& rows = observer.timeseries();
     json time = {{"time_s", column_json(rows, &observe::TimeSample::time)},
                  {"front_chainage_m", column_json(rows, &observe::TimeSample::front_chainage)},
@@ -284,14 +338,14 @@ json Scenario::series_json() const {
     return with_short_numbers({{"time", time}, {"front", front}, {"gauges", gauge_curves(observer.gauges())}});
 }
 
-json Scenario::impacts_json(std::optional<double> time) const {
-    const LiveRun& run = *parts_->run;
-    const report::IntensityGuideline& guideline = guideline_of(*parts_->scene);
+json impacts_json(const Scenario& scenario, std::optional<double> time) {
+    const LiveRun& run = scenario.run();
+    const report::IntensityGuideline& guideline = guideline_of(scenario.scene());
     json buildings = json::array(), barriers = json::array(), removed = json::array();
-    for (const BuildingSetup& building : parts_->setup().buildings) {
+    for (const BuildingSetup& building : run.setup().buildings) {
         buildings.push_back(impact_json(building.id, run.impact_on(building.id, time), false, guideline));
     }
-    for (const BarrierSetup& barrier : parts_->setup().barriers) {
+    for (const BarrierSetup& barrier : run.setup().barriers) {
         barriers.push_back(impact_json(barrier.id, run.impact_on(barrier.id, time), true, guideline));
     }
     for (const LiveRun::Removed& gone : run.removed()) {
@@ -303,52 +357,15 @@ json Scenario::impacts_json(std::optional<double> time) const {
     return with_short_numbers({{"buildings", buildings}, {"barriers", barriers}, {"removed", removed}});
 }
 
-json Scenario::journal_json() const {
-    const Parts& p = *parts_;
-    std::string file = p.scene->file.string();
-    if (!file.starts_with("built-in:")) file = std::filesystem::absolute(p.scene->file).lexically_normal().string();
-    return write_journal({file, p.options.overrides, p.scene->inputs, p.first_setup, p.first_next, p.entries, step(),
-                          time(), to_hex(hash()), p.run->instruction_set()});
+json journal_json(const Scenario& scenario) {
+    return write_journal(journal_of(scenario));
 }
 
-json Scenario::recording_json() const {
-    const Recording& recording = parts_->run->recording();
+json recording_json(const Scenario& scenario) {
+    const Recording& recording = scenario.run().recording();
     json times = json::array();
     for (const FramePtr& frame : recording.frames()) times.push_back(frame->time);
     return {{"times_s", times}, {"bytes", recording.bytes()}};
-}
-
-namespace {
-
-json read_probe(const std::vector<FramePtr>& frames, const GridGeometry& map, const PlanPoint& p) {
-    json times = json::array(), depths = json::array(), speeds = json::array(), pressures = json::array(),
-         ratios = json::array();
-    const double column = std::floor((p.x - map.x_min) / map.cell), row = std::floor((p.y - map.y_min) / map.cell);
-    const bool on_map = column >= 0 && row >= 0 && column < map.columns && row < map.rows;
-    for (const FramePtr& frame : frames) {
-        const DebrisAt here =
-            on_map ? debris_at(*frame, static_cast<std::uint32_t>(column), static_cast<std::uint32_t>(row))
-                   : DebrisAt{};
-        times.push_back(frame->time);
-        depths.push_back(here.depth);
-        speeds.push_back(here.speed);
-        pressures.push_back(here.density * here.speed * here.speed / 1e3);
-        ratios.push_back(number_or_null<json>(here.pore_pressure_ratio));
-    }
-    return {{"time_s", times},
-            {"depth_m", depths},
-            {"speed_mps", speeds},
-            {"pressure_kPa", pressures},
-            {"pore_pressure_ratio", ratios}};
-}
-
-}  // namespace
-
-std::function<json()> Scenario::probe(const PlanPoint& p) const {
-    const LiveRun& run = *parts_->run;
-    return [frames = run.recording().frames(), map = run.observer().maps().geometry(), p] {
-        return read_probe(frames, map, p);
-    };
 }
 
 }  // namespace talus::twin

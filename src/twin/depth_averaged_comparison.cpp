@@ -117,56 +117,58 @@ json compared(const scene::Scene& scene, const run::RunResult& particles, const 
 
 }  // namespace
 
-std::string Scenario::setup_key() const {
-    json key = write_setup(parts_->setup());
+std::string setup_key(const Scenario& scenario) {
+    const LiveRun& run = scenario.run();
+    json key = write_setup(run.setup());
     for (const char* beside : {"observations", "triggers", "alarms"}) key.erase(beside);
     key["starts"] = json::array();
-    for (const ReleaseSetup& release : parts_->setup().releases) {
-        key["starts"].push_back(number_or_null<json>(parts_->run->start_time_of(release.id)));
+    for (const ReleaseSetup& release : run.setup().releases) {
+        key["starts"].push_back(number_or_null<json>(run.start_time_of(release.id)));
     }
     return key.dump();
 }
 
-std::function<Result<scene::Scene>()> Scenario::for_depth_averaged(const DepthAveragedLimits& limits) const {
+std::function<Result<scene::Scene>()> scene_for_depth_averaged(const Scenario& scenario,
+                                                               const DepthAveragedLimits& limits) {
+    const LiveRun& run = scenario.run();
     std::vector<double> starts;
-    for (const ReleaseSetup& release : parts_->setup().releases)
-        starts.push_back(parts_->run->start_time_of(release.id));
-    return
-        [scene = parts_->scene, setup = parts_->setup(), starts = std::move(starts), limits]() -> Result<scene::Scene> {
-            scene::Scene now = scene_of(*scene, setup);
-            for (std::size_t k = 0; k < starts.size(); ++k) now.releases[k].spec.start_time = starts[k];
-            // What was changed here counts as given, so that what the model has no use for is named.
-            for (const params::Parameter* parameter : live_parameters()) {
-                params::SceneSpec before, after;
-                before.material = scene->spec.material;
-                after.material = setup.material;
-                const bool changed =
-                    params::plain_text(parameter->get(before, 0)) != params::plain_text(parameter->get(after, 0));
-                if (changed) now.given_keys.insert("material." + parameter->key);
-            }
-            return twin::for_depth_averaged(std::move(now), limits);
-        };
+    for (const ReleaseSetup& release : run.setup().releases) starts.push_back(run.start_time_of(release.id));
+    return [scene = scenario.parts().scene, setup = run.setup(), starts = std::move(starts),
+            limits]() -> Result<scene::Scene> {
+        scene::Scene now = scene_of(*scene, setup);
+        for (std::size_t k = 0; k < starts.size(); ++k) now.releases[k].spec.start_time = starts[k];
+        // What was changed here counts as given, so that what the model has no use for is named.
+        for (const params::Parameter* parameter : live_parameters()) {
+            params::SceneSpec before, after;
+            before.material = scene->spec.material;
+            after.material = setup.material;
+            const bool changed =
+                params::plain_text(parameter->get(before, 0)) != params::plain_text(parameter->get(after, 0));
+            if (changed) now.given_keys.insert("material." + parameter->key);
+        }
+        return for_depth_averaged(std::move(now), limits);
+    };
 }
 
-std::function<json()> Scenario::compared_with(std::shared_ptr<const DepthAveragedRun> other) const {
-    const LiveRun& run = *parts_->run;
+std::function<json()> comparison_with(const Scenario& scenario, std::shared_ptr<const DepthAveragedRun> other) {
+    const LiveRun& run = scenario.run();
     run::RunResult particles = run.result();
     // Along the scene's path, as those of the other model: a result may have followed the debris.
     particles.observation.front = run.observer().front();
     particles.observation.run_out.front_chainage = run.observer().front_chainage();
-    const bool over = phase() == run::RunPhase::at_rest || phase() == run::RunPhase::ended;
+    const bool over = run.phase() == run::RunPhase::at_rest || run.phase() == run::RunPhase::ended;
     std::vector<std::string> differs;
-    if (!parts_->changes.empty()) {
+    if (!scenario.parts().changes.empty()) {
         differs.emplace_back(
             "The particles' setup was changed on the way; the depth-averaged model has the present one from its "
             "start.");
     }
-    if (!begin_alike(parts_->setup(), run.begun_with())) {
+    if (!begin_alike(run.setup(), run.begun_with())) {
         differs.emplace_back(
             "Beds, inflows or gauges were changed: the depth-averaged model has them already, the particles after a "
             "restart.");
     }
-    return [scene = parts_->scene, particles = std::move(particles), other = std::move(other), over,
+    return [scene = scenario.parts().scene, particles = std::move(particles), other = std::move(other), over,
             differs = std::move(differs)] {
         json all = compared(*scene, particles, other->result, over);
         all["differs"] = differs;

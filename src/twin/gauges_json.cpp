@@ -1,12 +1,13 @@
-// Gauges and cross-sections of a scene: where they are, what they read, and the curves of gauges.
+#include "twin/gauges_json.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <utility>
 
 #include "core/number_or_null.hpp"
-#include "twin/gauges_json.hpp"
-#include "twin/scenario_parts.hpp"
+#include "twin/answers.hpp"
+#include "twin/live_run.hpp"
 
 namespace talus::twin {
 namespace {
@@ -103,11 +104,11 @@ json gauge_curves(const std::vector<GaugeRecord>& records) {
     return {{"time_s", times}, {"depth_m", depths}};
 }
 
-json Scenario::gauges_json(std::optional<double> time) const {
-    const observe::Observer& observer = parts_->run->observer();
+json gauges_json(const Scenario& scenario, std::optional<double> time) {
+    const observe::Observer& observer = scenario.run().observer();
     json readings = json::array(), sections = json::array();
     // A time is told with four decimals: the row of the moment that was meant may lie just after it.
-    const double now = parts_->run->summary().time, until = time.value_or(now) + 1e-4;
+    const double now = scenario.run().summary().time, until = time.value_or(now) + 1e-4;
     for (const observe::DischargeRecord& record : observer.cross_sections(now)) {
         sections.push_back(section_json(record, until));
     }

@@ -1,3 +1,5 @@
+#include "twin/results.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
@@ -19,11 +21,7 @@
 #include "twin/gauges_json.hpp"
 #include "twin/json_keys.hpp"
 #include "twin/past_maps.hpp"
-#include "twin/recorded_flow.hpp"
 #include "twin/scenario_parts.hpp"
-#include "twin/scene_copy.hpp"
-
-// What a scenario has to show: layers of the map, figures, the products of a run.
 
 namespace talus::twin {
 namespace {
@@ -58,14 +56,46 @@ std::vector<std::string> obstacle_notes(const LiveRun& run) {
     return notes;
 }
 
+json read_probe(const std::vector<FramePtr>& frames, const GridGeometry& map, const PlanPoint& p) {
+    json times = json::array(), depths = json::array(), speeds = json::array(), pressures = json::array(),
+         ratios = json::array();
+    const double column = std::floor((p.x - map.x_min) / map.cell), row = std::floor((p.y - map.y_min) / map.cell);
+    const bool on_map = column >= 0 && row >= 0 && column < map.columns && row < map.rows;
+    for (const FramePtr& frame : frames) {
+        const DebrisAt here =
+            on_map ? debris_at(*frame, static_cast<std::uint32_t>(column), static_cast<std::uint32_t>(row))
+                   : DebrisAt{};
+        times.push_back(frame->time);
+        depths.push_back(here.depth);
+        speeds.push_back(here.speed);
+        pressures.push_back(here.density * here.speed * here.speed / 1e3);
+        ratios.push_back(number_or_null<json>(here.pore_pressure_ratio));
+    }
+    return {{"time_s", times},
+            {"depth_m", depths},
+            {"speed_mps", speeds},
+            {"pressure_kPa", pressures},
+            {"pore_pressure_ratio", ratios}};
+}
+
+/// What was changed during the run, so that its files are the result of no single setup; empty: nothing.
+std::string changed_text(const Scenario& scenario) {
+    std::string text;
+    for (const Scenario::Parts::ChangeOnTheWay& change : scenario.parts().changes) {
+        text += fmt::format("{}{} at {:.1f} s", text.empty() ? "" : "; ", change.sentence, change.time);
+    }
+    return text;
+}
+
 }  // namespace
 
-Result<std::function<Grid<float>()>> Scenario::layer(const std::string& name, std::optional<double> time) const {
+Result<std::function<Grid<float>()>> layer_of(const Scenario& scenario, const std::string& name,
+                                              std::optional<double> time) {
     const std::vector<std::string_view> layer_names = run_layers();
     if (std::find(layer_names.begin(), layer_names.end(), name) == layer_names.end()) {
         return Error{fmt::format("layer = {}: must be one of {}", shown(json(name)), fmt::join(layer_names, ", "))};
     }
-    const LiveRun& run = *parts_->run;
+    const LiveRun& run = scenario.run();
     const observe::MapAccumulator& maps = run.observer().maps();
     std::vector<FramePtr> frames;
     if (time) frames = run.recording().until(*time);
@@ -83,68 +113,53 @@ Result<std::function<Grid<float>()>> Scenario::layer(const std::string& name, st
         [name, frames = std::move(frames), frame = std::move(frame)] { return past_layer(name, frames, frame); });
 }
 
-bool Scenario::has_erosion() const {
-    return parts_->run->summary().entrained > 0;
+std::function<json()> probe_at(const Scenario& scenario, const PlanPoint& p) {
+    const LiveRun& run = scenario.run();
+    return [frames = run.recording().frames(), map = run.observer().maps().geometry(), p] {
+        return read_probe(frames, map, p);
+    };
 }
 
-std::pair<scene::Scene, run::RunResult> Scenario::Parts::outcome() const {
+std::pair<scene::Scene, run::RunResult> outcome_of(const Scenario& scenario) {
+    const Scenario::Parts& p = scenario.parts();
+    const LiveRun& run = scenario.run();
     // Beds and inflows of the start of the run, the rest of the current setup.
-    Setup wanted = setup();
-    wanted.beds = run->begun_with().beds;
-    wanted.inflows = run->begun_with().inflows;
-    scene::Scene told = scene_of(*scene, wanted);
+    Setup wanted = run.setup();
+    wanted.beds = run.begun_with().beds;
+    wanted.inflows = run.begun_with().inflows;
+    scene::Scene told = scene_of(scenario.scene(), wanted);
     for (std::size_t k = 0; k < wanted.releases.size(); ++k) {
-        told.releases[k].spec.start_time = run->start_time_of(wanted.releases[k].id);
+        told.releases[k].spec.start_time = run.start_time_of(wanted.releases[k].id);
     }
-    for (const LiveRun::Removed& removed : run->removed()) told.buildings.push_back(*removed.body);
-    for (std::string& note : obstacle_notes(*run)) told.notes.push_back(std::move(note));
-    for (const JournalEntry& entry : entries) {
+    for (const LiveRun::Removed& removed : run.removed()) told.buildings.push_back(*removed.body);
+    for (std::string& note : obstacle_notes(run)) told.notes.push_back(std::move(note));
+    for (const JournalEntry& entry : p.entries) {
         if (entry.step > 0) break;
         told.notes.push_back(fmt::format("before step 0, by {}: {}", entry.by, entry.action.dump()));
     }
-    for (const ChangeOnTheWay& change : changes) {
+    for (const Scenario::Parts::ChangeOnTheWay& change : p.changes) {
         told.notes.push_back(fmt::format("changed at {:.1f} s, by {}: {}", change.time, change.by, change.sentence));
     }
-    run::RunResult result = run->result();
+    run::RunResult result = run.result();
     run::take_followed_path(told, result);
     return {std::move(told), std::move(result)};
 }
 
-std::function<std::pair<scene::Scene, run::RunResult>()> Scenario::outcome() const {
-    return [outcome = parts_->outcome()] { return outcome; };
-}
-
-std::function<Result<SceneCopy>(const std::filesystem::path&, const std::vector<std::string>&)>
-Scenario::copy_of_scene() const {
-    Setup setup = parts_->setup();
-    for (ReleaseSetup& release : setup.releases) {
-        // One that was drawn has no start time but the one at which it was triggered.
-        if (!std::isinf(release.body->spec.start_time)) continue;
-        terrain::Release body = *release.body;
-        body.spec.start_time = parts_->run->start_time_of(release.id);
-        release.body = std::make_shared<const terrain::Release>(std::move(body));
-    }
-    return [setup = std::move(setup), scene = parts_->scene](
-               const std::filesystem::path& file, const std::vector<std::string>& overrides) -> Result<SceneCopy> {
-        return scene_copy(file, overrides, setup, *scene);
-    };
-}
-
-std::function<json()> Scenario::figures() const {
-    return [outcome = parts_->outcome()] {
+std::function<json()> figures_of(const Scenario& scenario) {
+    return [outcome = outcome_of(scenario)] {
         return json{{"figures", json::parse(report::key_figures(outcome.first, outcome.second).dump())}};
     };
 }
 
-json Scenario::results_json() const {
-    const auto [told, result] = parts_->outcome();
+json results_json(const Scenario& scenario) {
+    const auto [told, result] = outcome_of(scenario);
     // Paths are as the system has them.
     const report::Json all = report::run_results(told, result, {});
     return json::parse(all.dump(-1, ' ', false, report::Json::error_handler_t::replace));
 }
 
-json Scenario::measures_json() const {
-    const run::RunResult result = parts_->outcome().second;
+json measures_json(const Scenario& scenario) {
+    const run::RunResult result = outcome_of(scenario).second;
     const observe::RunOut& r = result.observation.run_out;
     json gauges = json::array();
     for (const observe::GaugeRecord& record : result.observation.gauges) {
@@ -158,14 +173,14 @@ json Scenario::measures_json() const {
     json run_out = products::run_out_json(result.observation);
     run_out["toe_x_m"] = number_or_null<json>(r.toe.x);
     run_out["toe_y_m"] = number_or_null<json>(r.toe.y);
-    return {{"run_out", std::move(run_out)}, {"gauges", std::move(gauges)}, {"crs_wkt", parts_->scene->crs.wkt}};
+    return {{"run_out", std::move(run_out)}, {"gauges", std::move(gauges)}, {"crs_wkt", scenario.scene().crs.wkt}};
 }
 
-std::vector<RunFile> Scenario::page_files() const {
-    if (step() == 0) return {};
-    const auto outcome = std::make_shared<const std::pair<scene::Scene, run::RunResult>>(parts_->outcome());
+std::vector<RunFile> page_files_of(const Scenario& scenario) {
+    if (scenario.step() == 0) return {};
+    const auto outcome = std::make_shared<const std::pair<scene::Scene, run::RunResult>>(outcome_of(scenario));
     const auto& [scene, result] = *outcome;
-    std::vector<products::PageFile> made = products::tables_of(result, parts_->changed_text());
+    std::vector<products::PageFile> made = products::tables_of(result, changed_text(scenario));
     for (products::PageFile& map : products::plain_maps_of(scene, result)) made.push_back(std::move(map));
     std::vector<RunFile> files;
     files.reserve(made.size());
@@ -176,29 +191,14 @@ std::vector<RunFile> Scenario::page_files() const {
     return files;
 }
 
-std::string Scenario::Parts::changed_text() const {
-    std::string text;
-    for (const ChangeOnTheWay& change : changes) {
-        text += fmt::format("{}{} at {:.1f} s", text.empty() ? "" : "; ", change.sentence, change.time);
-    }
-    return text;
-}
-
-std::function<Status(const std::filesystem::path&)> Scenario::products() const {
-    return [outcome = parts_->outcome(), changed = parts_->changed_text()](const std::filesystem::path& folder) {
+std::function<Status(const std::filesystem::path&)> products_of(const Scenario& scenario) {
+    return [outcome = outcome_of(scenario), changed = changed_text(scenario)](const std::filesystem::path& folder) {
         return products::write_products(outcome.first, outcome.second, folder, {}, changed);
     };
 }
 
-std::shared_ptr<const RecordedFlow> Scenario::flow() const {
-    const LiveRun& run = *parts_->run;
-    std::vector<FramePtr> frames = run.recording().frames();
-    // Between two frames of the recording, or at its end.
-    if (frames.empty() || frames.back()->time < run.summary().time) frames.push_back(run.frame(1, 0));
-    auto [scene, result] = parts_->outcome();
-    const observe::MapAccumulator& maps = run.observer().maps();
-    return std::make_shared<const RecordedFlow>(std::move(scene), std::move(result), std::move(frames), maps.geometry(),
-                                                maps.thinnest_depth(), parts_->options.frame_interval);
+Version version_of(const Scenario& scenario) {
+    return {scenario.step(), scenario.parts().revision, hash_state(scenario.run().state())};
 }
 
 }  // namespace talus::twin
