@@ -76,14 +76,14 @@ Result<calibrate::CalibrationPlan> read_plan(const json& wanted) {
 
 }  // namespace
 
-Calibrations::Calibrations(std::shared_ptr<const scene::Scene> scene, CalibrationSettings settings,
+Calibrations::Calibrations(Executor& executor, std::shared_ptr<const scene::Scene> scene, CalibrationSettings settings,
                            std::function<void(json)> tell)
     : settings_(std::move(settings)),
       opened_(std::move(scene)),
       scene_(opened_),
       observed_(ensemble::observed_values(*scene_)),
       tell_(std::move(tell)),
-      worker_(std::make_unique<Worker>("calibration", 10)) {
+      lane_(executor, "calibration", Priority::idle) {
     status_ = {{"state", "idle"},
                {"why_not", why_none(observed_, settings_.source)},
                {"by", nullptr},
@@ -112,7 +112,7 @@ void Calibrations::close() {
         closed_ = true;
     }
     stop_ = true;
-    worker_.reset();
+    lane_.close();
 }
 
 json Calibrations::describe() const {
@@ -144,7 +144,7 @@ void Calibrations::start(const json& wanted, const std::string& by, const Respon
     }
     busy_ = true;
     stop_ = false;
-    worker_->post([this, plan = std::move(*plan), by, respond] { work(plan, by, respond); });
+    lane_.post([this, plan = std::move(*plan), by, respond] { work(plan, by, respond); });
 }
 
 Status Calibrations::cancel() {

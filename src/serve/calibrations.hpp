@@ -15,8 +15,8 @@
 #include "core/result.hpp"
 #include "run/variants.hpp"
 #include "scene/scene.hpp"
+#include "serve/executor.hpp"
 #include "serve/message.hpp"
-#include "serve/worker.hpp"
 
 namespace talus::serve {
 
@@ -29,12 +29,12 @@ struct CalibrationSettings {
     bool keep = false;             ///< the folders stay, with tables and report
 };
 
-/// One calibration at a time, on a separate thread of lower priority than the live run. Its result is kept until the
-/// next one starts. Functions may be called from any thread.
+/// One calibration at a time, at a lower priority than the live run. Its result is kept until the next one starts.
+/// Functions may be called from any thread.
 class Calibrations {
   public:
     /// `tell` is called with describe() after every change, from any thread.
-    Calibrations(std::shared_ptr<const scene::Scene> scene, CalibrationSettings settings,
+    Calibrations(Executor& executor, std::shared_ptr<const scene::Scene> scene, CalibrationSettings settings,
                  std::function<void(nlohmann::json)> tell);
     ~Calibrations();
     Calibrations(const Calibrations&) = delete;
@@ -47,7 +47,7 @@ class Calibrations {
     void start(const nlohmann::json& wanted, const std::string& by, const Respond& respond);
     /// The current run is discarded. Error: none is running.
     [[nodiscard]] Status cancel();
-    /// Ends the thread; nothing is sent any more.
+    /// Ends the current run; nothing is sent any more.
     void close();
 
     /// As `GET /api/calibration`.
@@ -93,7 +93,7 @@ class Calibrations {
     nlohmann::json followed_, taken_;  // observations of the setup; null: those of the scene
     bool busy_ = false, closed_ = false;
     Clock::time_point told_{};
-    std::unique_ptr<Worker> worker_;
+    Lane lane_;
 };
 
 }  // namespace talus::serve

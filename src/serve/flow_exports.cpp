@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <exception>
-#include <sys/resource.h>
 #include <system_error>
 #include <utility>
 
@@ -22,7 +21,6 @@ namespace fs = std::filesystem;
 using nlohmann::json;
 
 constexpr params::Range interval_range{.low = 0.001, .high = 1e7};  // s, as outputs.series_interval_s
-constexpr int niceness = 10;  // a tenth of the live run's share where cores are short
 
 void delete_all(const fs::path& folder) {
     std::error_code ignored;
@@ -48,7 +46,8 @@ const char* type_of(const std::string& name) {
 
 }  // namespace
 
-FlowExports::FlowExports(Session& session, fs::path folder) : session_(session), folder_(std::move(folder)) {}
+FlowExports::FlowExports(Session& session, fs::path folder)
+    : session_(session), folder_(std::move(folder)), writer_(session.executor(), "flow export", Priority::idle) {}
 
 FlowExports::~FlowExports() {
     close();
@@ -56,7 +55,7 @@ FlowExports::~FlowExports() {
 
 void FlowExports::close() {
     stop_ = true;
-    writer_.reset();
+    writer_.close();
     const std::lock_guard lock(mutex_);
     delete_all(job_.folder);
     job_ = {};
@@ -134,12 +133,11 @@ Response FlowExports::begin(const std::string& scenario, const std::shared_ptr<c
     delete_all(job_.folder);
     job_ = {State::running, scenario, "", 0, files_of(wanted.formats), folder_ / fmt::format("flow-{}", ++count_)};
     stop_ = false;
-    writer_->post([this, flow, wanted, folder = job_.folder] { write(*flow, wanted, folder); });
+    writer_.post([this, flow, wanted, folder = job_.folder] { write(*flow, wanted, folder); });
     return json_response(200, describe_now());
 }
 
 void FlowExports::write(const twin::RecordedFlow& flow, const Wanted& wanted, const fs::path& folder) {
-    setpriority(PRIO_PROCESS, 0, niceness);  // of this thread alone
     const auto go_on = [this](double share) {
         const std::lock_guard lock(mutex_);
         job_.share = share;

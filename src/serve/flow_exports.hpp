@@ -11,22 +11,22 @@
 
 #include <nlohmann/json.hpp>
 
+#include "serve/executor.hpp"
 #include "serve/sent_files.hpp"
 #include "serve/session.hpp"
-#include "serve/worker.hpp"
 #include "twin/recorded_flow.hpp"
 
 namespace talus::serve {
 
-/// The moving flow of a scenario as files for other programs, from its recording: one at a time for the session, on a
-/// thread of lower priority while the steps continue. Its files are kept until the next one. Functions may be called
-/// from any thread.
+/// The moving flow of a scenario as files for other programs, from its recording: one at a time for the session, at
+/// lower priority while the steps continue. Its files are kept until the next one. Functions may be called from any
+/// thread.
 class FlowExports {
   public:
     /// `folder`: an existing one to write into; it is not removed.
     FlowExports(Session& session, std::filesystem::path folder);
     ~FlowExports();
-    /// Ends its thread and deletes its files. The session must have been closed before.
+    /// Ends its lane and deletes its files. The session must have been closed before.
     void close();
     FlowExports(const FlowExports&) = delete;
     FlowExports& operator=(const FlowExports&) = delete;
@@ -70,7 +70,7 @@ class FlowExports {
     std::uint64_t count_ = 0;  // of folders, for their names
     const std::shared_ptr<SentFiles> sent_ = std::make_shared<SentFiles>();
     std::atomic<bool> stop_ = false;  // ends the one that is being made
-    std::unique_ptr<Worker> writer_ = std::make_unique<Worker>("flow export");
+    Lane writer_;
 };
 
 }  // namespace talus::serve

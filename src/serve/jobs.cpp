@@ -69,8 +69,8 @@ void end_with(Job& job, const Result<ChildOutcome>& outcome, bool stopped, bool 
 
 }  // namespace
 
-Jobs::Jobs(fs::path folder, fs::path program)
-    : folder_(std::move(folder)), program_(std::move(program)), worker_(std::make_unique<Worker>("jobs")) {
+Jobs::Jobs(Executor& executor, fs::path folder, fs::path program)
+    : folder_(std::move(folder)), program_(std::move(program)), lane_(executor, "jobs") {
     if (!program_.empty()) load();
 }
 
@@ -86,7 +86,7 @@ Jobs::~Jobs() {
             }
         }
     }
-    worker_.reset();
+    lane_.close();
 }
 
 void Jobs::load() {
@@ -183,7 +183,7 @@ void Jobs::queue(const EntryPtr& entry) {
     job.message.clear();
     job.ended_at.clear();
     entry->stop = false;
-    worker_->post([this, entry] { run(entry); });
+    lane_.post([this, entry] { run(entry); });
 }
 
 Result<std::string> Jobs::add(const WantedJob& wanted, const std::optional<KnownScene>& scene) {
