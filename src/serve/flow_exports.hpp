@@ -1,6 +1,5 @@
 #pragma once
 
-#include <atomic>
 #include <cstdint>
 #include <filesystem>
 #include <memory>
@@ -14,6 +13,7 @@
 #include "serve/executor.hpp"
 #include "serve/sent_files.hpp"
 #include "serve/session.hpp"
+#include "serve/undertaking.hpp"
 #include "twin/recorded_flow.hpp"
 
 namespace talus::serve {
@@ -43,10 +43,8 @@ class FlowExports {
     void file(const std::string& name, const Respond& respond) const;
 
   private:
-    enum class State { idle, running, cancelling, done, cancelled, failed };
-    struct Job {
-        State state = State::idle;
-        std::string scenario, message;
+    struct Job : Undertaking {
+        std::string scenario;
         double share = 0;
         std::vector<std::string> files;  ///< names, in the order of their formats
         std::filesystem::path folder;
@@ -55,13 +53,12 @@ class FlowExports {
         std::vector<std::string> formats;
         double interval = 0;  ///< s; 0: that of the scene
     };
-    static const char* name_of(State state);
     [[nodiscard]] static Result<Wanted> read(const std::string& body);
     [[nodiscard]] Response begin(const std::string& scenario, const std::shared_ptr<const twin::RecordedFlow>& flow,
                                  const Wanted& wanted);
-    void write(const twin::RecordedFlow& flow, const Wanted& wanted, const std::filesystem::path& folder);
+    void write(const twin::RecordedFlow& flow, const Wanted& wanted, const Job& job);
     [[nodiscard]] nlohmann::json describe_now() const;
-    void end(State state, std::string message);
+    void end(Job::State state, std::string message);
 
     Session& session_;
     std::filesystem::path folder_;
@@ -69,7 +66,6 @@ class FlowExports {
     Job job_;
     std::uint64_t count_ = 0;  // of folders, for their names
     const std::shared_ptr<SentFiles> sent_ = std::make_shared<SentFiles>();
-    std::atomic<bool> stop_ = false;  // ends the one that is being made
     Lane writer_;
 };
 

@@ -56,7 +56,6 @@ class Jobs {
     struct Entry {
         Job job;
         std::string ticket;  ///< of its report: a link that needs no token
-        std::atomic<bool> stop{false};
     };
     using EntryPtr = std::shared_ptr<Entry>;
     void load();
