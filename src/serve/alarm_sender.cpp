@@ -7,9 +7,9 @@
 
 namespace talus::serve {
 
-AlarmSender::AlarmSender(Settings settings, MqttLink* link) : settings_(std::move(settings)) {
-    const auto add = [this](std::string name, std::function<Status(const std::string&)> deliver) {
-        queues_.push_back(std::make_unique<Queue>());
+AlarmSender::AlarmSender(Executor& executor, Settings settings, MqttLink* link) : settings_(std::move(settings)) {
+    const auto add = [&](std::string name, std::function<Status(const std::string&)> deliver) {
+        queues_.push_back(std::make_unique<Queue>(executor));
         queues_.back()->name = std::move(name);
         queues_.back()->deliver = std::move(deliver);
     };
@@ -55,7 +55,7 @@ void AlarmSender::send(const std::string& json, const std::function<void(const O
             continue;
         }
         ++queue.waiting;
-        queue.worker.post([this, k, &queue, json, told] {
+        queue.lane.post([this, k, &queue, json, told] {
             --queue.waiting;
             if (stop_) return;
             const Status sent = repeat([&] { return queue.deliver(json); });

@@ -10,14 +10,14 @@
 #include <vector>
 
 #include "core/result.hpp"
+#include "serve/executor.hpp"
 #include "serve/mqtt_link.hpp"
 #include "serve/webhook.hpp"
-#include "serve/worker.hpp"
 
 namespace talus::serve {
 
-/// Delivers messages to a webhook and a broker, each with a bounded number of tries. Each receiver has a queue and a
-/// thread of its own, so that nothing waits for a receiver, and none for another.
+/// Delivers messages to a webhook and a broker, each with a bounded number of tries. Each receiver has a lane of its
+/// own, so that nothing waits for a receiver, and none for another.
 class AlarmSender {
   public:
     struct Settings {
@@ -27,7 +27,7 @@ class AlarmSender {
         std::chrono::milliseconds limit{10000};                                  ///< of a try
     };
     /// `link`: none for nullptr; it must outlive this.
-    AlarmSender(Settings settings, MqttLink* link);
+    AlarmSender(Executor& executor, Settings settings, MqttLink* link);
     /// Ends the tries that go on; what waits is discarded.
     ~AlarmSender() { stop_ = true; }
 
@@ -49,10 +49,11 @@ class AlarmSender {
 
   private:
     struct Queue {
+        explicit Queue(Executor& executor) : lane(executor, "alarms") {}
         std::string name;
         std::function<Status(const std::string& json)> deliver;  ///< a try
         std::atomic<std::size_t> waiting = 0;
-        Worker worker{"alarms"};  // ends first
+        Lane lane;  // ends first
     };
 
     [[nodiscard]] Status repeat(const std::function<Status()>& attempt) const;

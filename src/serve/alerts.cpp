@@ -60,7 +60,7 @@ Status Alerts::open() {
         };
         TALUS_ASSIGN(link_, MqttLink::open(*settings_.mqtt, std::move(listener)));
     }
-    sender_ = std::make_unique<AlarmSender>(settings_.sender, link_.get());
+    sender_ = std::make_unique<AlarmSender>(session_.executor(), settings_.sender, link_.get());
     behind_.assign(sender_->receivers().size(), false);
     reserve();
     return {};

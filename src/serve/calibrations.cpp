@@ -76,18 +76,16 @@ Result<calibrate::CalibrationPlan> read_plan(const json& wanted) {
 
 }  // namespace
 
-Calibrations::Calibrations(std::shared_ptr<const scene::Scene> scene, CalibrationSettings settings,
+Calibrations::Calibrations(Executor& executor, std::shared_ptr<const scene::Scene> scene, CalibrationSettings settings,
                            std::function<void(json)> tell)
     : settings_(std::move(settings)),
       opened_(std::move(scene)),
       scene_(opened_),
       observed_(ensemble::observed_values(*scene_)),
       tell_(std::move(tell)),
-      worker_(std::make_unique<Worker>("calibration", 10)) {
-    status_ = {{"state", "idle"},
-               {"why_not", why_none(observed_, settings_.source)},
+      lane_(executor, "calibration", Priority::idle) {
+    status_ = {{"why_not", why_none(observed_, settings_.source)},
                {"by", nullptr},
-               {"message", ""},
                {"observations", observations_json(observed_)},
                {"parameters", json::array()},
                {"phase", nullptr},
@@ -95,7 +93,6 @@ Calibrations::Calibrations(std::shared_ptr<const scene::Scene> scene, Calibratio
                {"runs_failed", 0},
                {"fast_runs", json::array()},
                {"fast_runs_at_most", 0},
-               {"wall_remaining_s", nullptr},
                {"runs", json::array()},
                {"map", nullptr},
                {"best", nullptr},
@@ -110,19 +107,27 @@ void Calibrations::close() {
     {
         const std::lock_guard lock(mutex_);
         closed_ = true;
+        *calibration_.stop = true;
     }
-    stop_ = true;
-    worker_.reset();
+    lane_.close();
 }
 
 json Calibrations::describe() const {
     const std::lock_guard lock(mutex_);
-    return status_;
+    return describe_now();
+}
+
+json Calibrations::describe_now() const {
+    json now = status_;
+    now["state"] = calibration_.state_name();
+    now["message"] = calibration_.message;
+    now["wall_remaining_s"] = calibration_.wall_remaining ? json(*calibration_.wall_remaining) : json();
+    return now;
 }
 
 void Calibrations::tell_now() {
     told_ = Clock::now();
-    if (!closed_) tell_(status_);
+    if (!closed_) tell_(describe_now());
 }
 
 void Calibrations::start(const json& wanted, const std::string& by, const Respond& respond) {
@@ -143,18 +148,14 @@ void Calibrations::start(const json& wanted, const std::string& by, const Respon
         return;
     }
     busy_ = true;
-    stop_ = false;
-    worker_->post([this, plan = std::move(*plan), by, respond] { work(plan, by, respond); });
+    *calibration_.stop = false;  // from now on it can be cancelled
+    lane_.post([this, plan = std::move(*plan), by, respond] { work(plan, by, respond); });
 }
 
 Status Calibrations::cancel() {
     const std::lock_guard lock(mutex_);
     if (!busy_) return Error{"no calibration runs"};
-    stop_ = true;
-    if (status_["state"] == "running") {
-        status_["state"] = "cancelling";
-        tell_now();
-    }
+    if (calibration_.cancel()) tell_now();
     return {};
 }
 
@@ -198,7 +199,7 @@ void Calibrations::work(calibrate::CalibrationPlan plan, const std::string& by, 
         respond(json_response(200, {{"done", done}, {"created", nullptr}}));
         ending = calibrate_in(folder, plan, *runs);
     } catch (const std::exception& error) {  // running out of memory here must not end the live run
-        ending = {"failed", fmt::format("the calibration ended unexpectedly: {}", error.what())};
+        ending = {State::failed, fmt::format("the calibration ended unexpectedly: {}", error.what())};
     }
     std::error_code ignored;
     if (!settings_.keep) fs::remove_all(folder, ignored);
@@ -209,21 +210,21 @@ Calibrations::Ending Calibrations::calibrate_in(const fs::path& path, const cali
                                                 const ensemble::PlannedRuns& runs) {
     const auto folder = ensemble::EnsembleFolder::open(
         path, calibration_definition("calibration", plan, runs, source_, *scene_, observed_, settings_.scene_name));
-    if (!folder) return {"failed", folder.error().message};
+    if (!folder) return {State::failed, folder.error().message};
     calibrate::CalibrationOptions options;
-    options.stop_requested = &stop_;
+    options.stop_requested = calibration_.stop.get();
     options.on_progress = [this](const calibrate::CalibrationProgress& now) { take_progress(now); };
     options.on_run = [this](const calibrate::CalibrationRun& run) { take_run(run); };
     options.on_fit = [this](const calibrate::Calibration& now) { take_fit(now); };
     const auto made = calibrate::calibrate(plan, runs, source_, *scene_, observed_, *folder, options);
-    if (!made) return {"failed", made.error().message};
-    if (!made->fault.empty()) return {"failed", made->fault};
-    if (made->result.interrupted || stop_) return {"cancelled", ""};
+    if (!made) return {State::failed, made.error().message};
+    if (!made->fault.empty()) return {State::failed, made->fault};
+    if (made->result.interrupted || *calibration_.stop) return {State::cancelled, ""};
     take_fit(*made);
     take_result(*made);
-    if (!settings_.keep) return {"done", ""};
+    if (!settings_.keep) return {State::done, ""};
     const Status written = write_calibration(*made, source_, settings_.own_files, path);
-    return {"done", written ? "" : written.error().message};
+    return {State::done, written ? "" : written.error().message};
 }
 
 void Calibrations::begin(const calibrate::CalibrationPlan& plan, const std::string& by) {
@@ -237,9 +238,10 @@ void Calibrations::begin(const calibrate::CalibrationPlan& plan, const std::stri
                               {"low", factor.distribution.low},
                               {"high", factor.distribution.high}});
     }
-    status_["state"] = "running";
+    calibration_.state = State::running;
+    calibration_.message.clear();
+    calibration_.wall_remaining.reset();
     status_["by"] = by;
-    status_["message"] = "";
     status_["observations"] = observations_json(observed_);
     status_["parameters"] = parameters;
     status_["phase"] = search_phase_name(calibrate::SearchPhase::design);
@@ -248,7 +250,7 @@ void Calibrations::begin(const calibrate::CalibrationPlan& plan, const std::stri
     status_["fast_runs"] = json::array();
     status_["fast_runs_at_most"] = plan.search.fast_runs;
     status_["runs"] = json::array();
-    for (const char* none : {"wall_remaining_s", "map", "best", "result"}) status_[none] = nullptr;
+    for (const char* none : {"map", "best", "result"}) status_[none] = nullptr;
     tell_now();
 }
 
@@ -275,7 +277,7 @@ void Calibrations::take_run(const calibrate::CalibrationRun& run) {
 void Calibrations::take_progress(const calibrate::CalibrationProgress& now) {
     const std::lock_guard lock(mutex_);
     status_["phase"] = search_phase_name(now.phase);
-    status_["wall_remaining_s"] = number_or_null<json>(now.wall_remaining);
+    calibration_.wall_remaining = std::isfinite(now.wall_remaining) ? std::optional(now.wall_remaining) : std::nullopt;
     if (Clock::now() - told_ >= tell_every) tell_now();
 }
 
@@ -316,10 +318,8 @@ void Calibrations::take_result(const calibrate::Calibration& made) {
 
 void Calibrations::end(const Ending& ending) {
     const std::lock_guard lock(mutex_);
-    status_["state"] = ending.state;
-    status_["message"] = ending.message;
+    calibration_.end(ending.state, ending.message);
     status_["phase"] = nullptr;
-    status_["wall_remaining_s"] = nullptr;
     busy_ = false;
     if (!closed_) take_observations();  // what was followed meanwhile
     tell_now();

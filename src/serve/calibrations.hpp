@@ -1,6 +1,5 @@
 #pragma once
 
-#include <atomic>
 #include <chrono>
 #include <filesystem>
 #include <functional>
@@ -15,8 +14,9 @@
 #include "core/result.hpp"
 #include "run/variants.hpp"
 #include "scene/scene.hpp"
+#include "serve/executor.hpp"
 #include "serve/message.hpp"
-#include "serve/worker.hpp"
+#include "serve/undertaking.hpp"
 
 namespace talus::serve {
 
@@ -29,12 +29,13 @@ struct CalibrationSettings {
     bool keep = false;             ///< the folders stay, with tables and report
 };
 
-/// One calibration at a time, on a separate thread of lower priority than the live run. Its result is kept until the
-/// next one starts. Functions may be called from any thread.
+/// One calibration at a time, at a lower priority than the live run. Its result is kept until the next one starts. It
+/// is none of Jobs: it waits for none of those, needs no other program and no second copy of the terrain, and everybody
+/// sees its runs and the map of its emulators as they come. Functions may be called from any thread.
 class Calibrations {
   public:
     /// `tell` is called with describe() after every change, from any thread.
-    Calibrations(std::shared_ptr<const scene::Scene> scene, CalibrationSettings settings,
+    Calibrations(Executor& executor, std::shared_ptr<const scene::Scene> scene, CalibrationSettings settings,
                  std::function<void(nlohmann::json)> tell);
     ~Calibrations();
     Calibrations(const Calibrations&) = delete;
@@ -47,7 +48,7 @@ class Calibrations {
     void start(const nlohmann::json& wanted, const std::string& by, const Respond& respond);
     /// The current run is discarded. Error: none is running.
     [[nodiscard]] Status cancel();
-    /// Ends the thread; nothing is sent any more.
+    /// Ends the current run; nothing is sent any more.
     void close();
 
     /// As `GET /api/calibration`.
@@ -55,8 +56,9 @@ class Calibrations {
 
   private:
     using Clock = std::chrono::steady_clock;
+    using State = Undertaking::State;
     struct Ending {
-        const char* state = "failed";
+        State state = State::failed;
         std::string message;
     };
     void work(calibrate::CalibrationPlan plan, const std::string& by, const Respond& respond);
@@ -68,7 +70,8 @@ class Calibrations {
     void take_progress(const calibrate::CalibrationProgress& now);
     void take_result(const calibrate::Calibration& made);
     void end(const Ending& ending);
-    /// Under the lock: sends the current state.
+    // Under the lock:
+    [[nodiscard]] nlohmann::json describe_now() const;
     void tell_now();
     [[nodiscard]] std::filesystem::path new_folder() const;
 
@@ -87,13 +90,13 @@ class Calibrations {
     std::vector<ensemble::ObservedValue> observed_;
     run::SceneSource source_;  // of the present calibration
     std::function<void(nlohmann::json)> tell_;
-    std::atomic<bool> stop_{false};
     mutable std::mutex mutex_;         // guards the following members
-    nlohmann::json status_;            // as describe() gives it
+    Undertaking calibration_;          // the current or the last one
+    nlohmann::json status_;            // what describe() gives beside that
     nlohmann::json followed_, taken_;  // observations of the setup; null: those of the scene
     bool busy_ = false, closed_ = false;
     Clock::time_point told_{};
-    std::unique_ptr<Worker> worker_;
+    Lane lane_;
 };
 
 }  // namespace talus::serve

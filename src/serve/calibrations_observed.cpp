@@ -66,7 +66,7 @@ void Calibrations::take_observations() {
     observed_ = ensemble::observed_values(*scene_);
     status_["why_not"] = why_none(observed_, settings_.source);
     // What a former calibration found is beside the observations that it had.
-    if (status_["state"] == "idle") status_["observations"] = observations_json(observed_);
+    if (calibration_.state == State::idle) status_["observations"] = observations_json(observed_);
     tell_now();
 }
 

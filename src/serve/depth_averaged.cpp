@@ -15,7 +15,7 @@ constexpr std::chrono::milliseconds tell_share_every{500};
 }  // namespace
 
 DepthAveraged::DepthAveraged(Session& session)
-    : session_(session), worker_(std::make_unique<Worker>("depth-averaged", 5)) {
+    : session_(session), lane_(session.executor(), "depth-averaged", Priority::background) {
     session_.watch_setups([this] { look_again(); });
 }
 
@@ -29,7 +29,7 @@ void DepthAveraged::close() {
         closed_ = true;
         stop_ = true;
     }
-    worker_.reset();
+    lane_.close();
 }
 
 json DepthAveraged::describe(int scenario) const {
@@ -74,7 +74,7 @@ void DepthAveraged::look(Scenarios& all) {
     const std::lock_guard lock(mutex_);
     if (closed_) return;
     for (const int scenario : results_.look(all)) {
-        worker_->post([this] { run_next(); });
+        lane_.post([this] { run_next(); });
         tell(scenario);
     }
 }

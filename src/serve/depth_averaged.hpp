@@ -8,8 +8,8 @@
 
 #include <nlohmann/json.hpp>
 
+#include "serve/executor.hpp"
 #include "serve/session.hpp"
-#include "serve/worker.hpp"
 #include "session/depth_averaged.hpp"
 
 namespace talus::serve {
@@ -26,7 +26,7 @@ class DepthAveraged {
 
     /// For all scenarios, also those to come. Off: results are discarded.
     void turn(bool on);
-    /// Ends the thread; nothing is sent any more. Before the session is closed.
+    /// Ends the run under way; nothing is sent any more. Before the session is closed.
     void close();
 
     /// As `GET /api/scenarios/{s}/depth_averaged`.
@@ -52,7 +52,7 @@ class DepthAveraged {
     bool closed_ = false;
     std::atomic<bool> stop_ = false;  // ends the run under way
     Clock::time_point told_{};
-    std::unique_ptr<Worker> worker_;  // a task for each question
+    Lane lane_;  // a task for each question
 };
 
 }  // namespace talus::serve

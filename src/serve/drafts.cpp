@@ -121,10 +121,10 @@ class Drafts::Taking : public Intake {
 
     void take(std::string piece, std::function<void(std::optional<Response>)> then) override {
         // The connection holds this object until it is told.
-        drafts_.worker_->post([this, piece = std::move(piece), then = std::move(then)] { then(write(piece)); });
+        drafts_.lane_.post([this, piece = std::move(piece), then = std::move(then)] { then(write(piece)); });
     }
     void finish(const Respond& respond) override {
-        drafts_.worker_->post([this, respond, stop = drafts_.begin_reading(role_)] {
+        drafts_.lane_.post([this, respond, stop = drafts_.begin_reading(role_)] {
             out_.close();
             Draft* draft = drafts_.find(id_, respond);
             if (draft == nullptr) return;
@@ -167,9 +167,13 @@ class Drafts::Taking : public Intake {
     std::ofstream out_;
 };
 
-Drafts::Drafts(fs::path library, UploadLimits limits, fs::path temporary, geo::ForeignReader reader)
-    : library_(std::move(library)), temporary_(std::move(temporary)), limits_(limits), reader_(std::move(reader)) {
-    worker_->post([this] { remove_leftovers(); });
+Drafts::Drafts(Executor& executor, fs::path library, UploadLimits limits, fs::path temporary, geo::ForeignReader reader)
+    : library_(std::move(library)),
+      temporary_(std::move(temporary)),
+      limits_(limits),
+      reader_(std::move(reader)),
+      lane_(executor, "drafts") {
+    lane_.post([this] { remove_leftovers(); });
 }
 
 Drafts::Stop Drafts::begin_reading(const std::string& role) {
@@ -191,7 +195,7 @@ void Drafts::stop_reading(const std::string& role) {
 
 Drafts::~Drafts() {
     stop_reading();
-    worker_.reset();
+    lane_.close();
 }
 
 void Drafts::remove_leftovers() const {
@@ -211,7 +215,7 @@ Draft* Drafts::find(const std::string& id, const Respond& respond) {
 
 void Drafts::begin(const Respond& respond) {
     stop_reading();
-    worker_->post([this, respond] {
+    lane_.post([this, respond] {
         draft_.reset();
         auto id = random_token();
         if (!id) return respond(error_response(500, id.error().message));
@@ -224,14 +228,14 @@ void Drafts::begin(const Respond& respond) {
 }
 
 void Drafts::describe(const std::string& id, const Respond& respond) {
-    worker_->post([this, id, respond] {
+    lane_.post([this, id, respond] {
         if (const Draft* draft = find(id, respond)) respond(json_response(200, draft->describe()));
     });
 }
 
 void Drafts::discard(const std::string& id, const Respond& respond) {
     stop_reading();
-    worker_->post([this, id, respond] {
+    lane_.post([this, id, respond] {
         if (find(id, respond) == nullptr) return;
         draft_.reset();
         respond(json_response(200, {{"done", "discarded"}, {"created", nullptr}}));
@@ -244,7 +248,7 @@ std::shared_ptr<Intake> Drafts::intake(const Request& request) {
 
 void Drafts::remove(const std::string& id, const std::string& role, const Respond& respond) {
     stop_reading(role);
-    worker_->post([this, id, role, respond] {
+    lane_.post([this, id, role, respond] {
         Draft* draft = find(id, respond);
         if (draft == nullptr) return;
         draft->remove(role);
@@ -255,7 +259,7 @@ void Drafts::remove(const std::string& id, const std::string& role, const Respon
 void Drafts::mend(const Request& request, const Respond& respond) {
     const auto mending = read_mending(request);
     if (!mending) return respond(problem(mending.error().message));
-    worker_->post([this, id = request.parameters.at("id"), mending = *mending, respond] {
+    lane_.post([this, id = request.parameters.at("id"), mending = *mending, respond] {
         Draft* draft = find(id, respond);
         if (draft == nullptr) return;
         const Status done = draft->mend(mending);
@@ -264,7 +268,7 @@ void Drafts::mend(const Request& request, const Respond& respond) {
 }
 
 void Drafts::relief(const std::string& id, const Respond& respond) {
-    worker_->post([this, id, respond] {
+    lane_.post([this, id, respond] {
         const Draft* draft = find(id, respond);
         if (draft == nullptr) return;
         const Grid<float>* terrain = draft->terrain();
@@ -282,7 +286,7 @@ void Drafts::make(const Request& request, const Respond& respond) {
     auto wanted = read_wanted(*body);
     if (!wanted) return respond(problem(wanted.error().message));
     const bool check = body->value("check", json(false)) == true;
-    worker_->post([this, id = request.parameters.at("id"), check, wanted = std::move(*wanted), respond] {
+    lane_.post([this, id = request.parameters.at("id"), check, wanted = std::move(*wanted), respond] {
         Draft* draft = find(id, respond);
         if (draft == nullptr) return;
         if (check) {
@@ -299,7 +303,7 @@ void Drafts::make(const Request& request, const Respond& respond) {
 }
 
 void Drafts::pack(const fs::path& scene, bool builtin, const std::string& name, const Respond& respond) {
-    worker_->post([this, scene, builtin, name, respond] {
+    lane_.post([this, scene, builtin, name, respond] {
         const fs::path archive = temporary_ / "scene.zip", unpacked = temporary_ / "packed";
         auto bytes = [&]() -> Result<std::string> {
             fs::path file = scene;

@@ -9,18 +9,18 @@
 #include <vector>
 
 #include "serve/draft.hpp"
+#include "serve/executor.hpp"
 #include "serve/message.hpp"
-#include "serve/worker.hpp"
 
 namespace talus::serve {
 
 /// The new scene that is being made on the start page; beginning another one discards it, so that uploads never take
-/// more than one draft's bytes. For the server's thread; files are written and read on a thread of their own.
+/// more than one draft's bytes. For the server's thread; files are written and read on a lane.
 class Drafts {
   public:
     /// `library`: the start page's folder; drafts are below `drafts`, what a program that died left there is removed.
     /// `reader`: of what is uploaded.
-    Drafts(std::filesystem::path library, UploadLimits limits, std::filesystem::path temporary,
+    Drafts(Executor& executor, std::filesystem::path library, UploadLimits limits, std::filesystem::path temporary,
            geo::ForeignReader reader);
     ~Drafts();
     Drafts(const Drafts&) = delete;
@@ -48,7 +48,7 @@ class Drafts {
     /// Empty: of all roles.
     void stop_reading(const std::string& role = "");
     [[nodiscard]] Stop begin_reading(const std::string& role);
-    /// The draft of this id; answers otherwise. On the worker's thread.
+    /// The draft of this id; answers otherwise. On the lane.
     [[nodiscard]] Draft* find(const std::string& id, const Respond& respond);
     void remove_leftovers() const;
 
@@ -57,10 +57,10 @@ class Drafts {
     const geo::ForeignReader reader_;
     std::mutex mutex_;  // guards the following
     std::vector<std::pair<std::string, std::weak_ptr<std::atomic<bool>>>> readings_;
-    std::string id_;  // used by the worker's thread only, as the following
+    std::string id_;  // used on the lane only, as the following
     std::unique_ptr<Draft> draft_;
     int uploads_ = 0;
-    std::unique_ptr<Worker> worker_ = std::make_unique<Worker>("drafts");
+    Lane lane_;
 };
 
 }  // namespace talus::serve

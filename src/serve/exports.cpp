@@ -139,7 +139,7 @@ Status write_copy(const twin::SceneCopy& copy, const geo::Crs& crs, const fs::pa
 
 }  // namespace
 
-/// A run at the time of a request for files, and their folder. Once created, used by the writer's thread only.
+/// A run at the time of a request for files, and their folder. Once created, used by the writer only.
 struct Exports::Snapshot {
     twin::Version version;
     fs::path folder;
@@ -166,11 +166,14 @@ struct Exports::Snapshot {
 };
 
 Exports::Exports(Session& session, fs::path folder, run::SceneSource source)
-    : session_(session), folder_(std::move(folder)), source_(std::move(source)) {}
+    : session_(session),
+      folder_(std::move(folder)),
+      source_(std::move(source)),
+      writer_(session.executor(), "exports") {}
 Exports::~Exports() = default;
 
 void Exports::close() {
-    writer_.reset();
+    writer_.close();
 }
 
 bool Exports::is_current(int index, const twin::Scenario& scenario) const {
@@ -186,8 +189,8 @@ void Exports::list(const std::string& scenario, const Respond& respond) {
             return;
         }
         const bool current = is_current(*index, all.at(*index));
-        writer_->post([taken = current ? taken_[static_cast<std::size_t>(*index)] : nullptr,
-                       present = files_of(all.at(*index), source_), twin = twin_ != nullptr, respond] {
+        writer_.post([taken = current ? taken_[static_cast<std::size_t>(*index)] : nullptr,
+                      present = files_of(all.at(*index), source_), twin = twin_ != nullptr, respond] {
             json files = json::array();
             if (twin) files.push_back({{"name", twin_html}, {"bytes", nullptr}, {"what", twin_what}});
             const bool written = taken && !taken->products;
@@ -230,9 +233,9 @@ void Exports::file(const std::string& scenario, const std::string& name, const R
             fresh->folder = folder_ / fmt::format("{}{}", Scenarios::name_of(*index), ++count_);
             fresh->products = twin::products_of(run);
             std::swap(taken, fresh);
-            writer_->post([former = std::move(fresh)] {});  // this removes its files
+            writer_.post([former = std::move(fresh)] {});  // this removes its files
         }
-        writer_->post([this, taken, wanted, respond] {
+        writer_.post([this, taken, wanted, respond] {
             const Status written = taken->write();
             respond(written ? read_file(taken->folder / wanted->name, *wanted, sent_)
                             : error_response(500, without_folder(written.error().message, taken->folder)));
@@ -242,7 +245,7 @@ void Exports::file(const std::string& scenario, const std::string& name, const R
 
 void Exports::scene_archive(const twin::Scenario& scenario, const Respond& respond) {
     const fs::path folder = folder_ / fmt::format("scene{}", ++count_);
-    writer_->post([this, folder, source = source_, copy = twin::scene_copy_of(scenario), respond] {
+    writer_.post([this, folder, source = source_, copy = twin::scene_copy_of(scenario), respond] {
         const ExportFile& wanted = *find_file(scene_zip);
         const auto made = [&]() -> Result<Response> {
             // It is written into another folder: its files need whole paths.

@@ -9,9 +9,9 @@
 #include <utility>
 
 #include "run/variants.hpp"
+#include "serve/executor.hpp"
 #include "serve/sent_files.hpp"
 #include "serve/session.hpp"
-#include "serve/worker.hpp"
 
 namespace talus::serve {
 
@@ -19,14 +19,14 @@ namespace talus::serve {
 inline constexpr const char* twin_html = "twin.html";
 
 /// The result files of the runs so far, written on request and kept until the run has continued. Meanwhile
-/// steps continue: a separate thread writes the run as it was at the request.
+/// steps continue: the run is written elsewhere as it was at the request.
 class Exports {
   public:
     /// `folder`: an existing one to write into; it is not removed.
     /// `source`: loads the session's scene again; no file: there is no scene.zip.
     Exports(Session& session, std::filesystem::path folder, run::SceneSource source);
     ~Exports();
-    /// Ends its thread; pending requests are not answered. The session must have been closed before.
+    /// Ends its lane; pending requests are not answered. The session must have been closed before.
     void close();
     Exports(const Exports&) = delete;
     Exports& operator=(const Exports&) = delete;
@@ -55,7 +55,7 @@ class Exports {
     SentFiles sent_;
     std::weak_ptr<const std::string> archive_sent_;  // a scene.zip while it is being sent; used by the writer only
     std::string archived_;                           // the scene file in it
-    std::unique_ptr<Worker> writer_ = std::make_unique<Worker>("exports");
+    Lane writer_;
 };
 
 }  // namespace talus::serve

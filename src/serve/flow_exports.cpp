@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <exception>
-#include <sys/resource.h>
 #include <system_error>
 #include <utility>
 
@@ -22,7 +21,6 @@ namespace fs = std::filesystem;
 using nlohmann::json;
 
 constexpr params::Range interval_range{.low = 0.001, .high = 1e7};  // s, as outputs.series_interval_s
-constexpr int niceness = 10;  // a tenth of the live run's share where cores are short
 
 void delete_all(const fs::path& folder) {
     std::error_code ignored;
@@ -48,36 +46,22 @@ const char* type_of(const std::string& name) {
 
 }  // namespace
 
-FlowExports::FlowExports(Session& session, fs::path folder) : session_(session), folder_(std::move(folder)) {}
+FlowExports::FlowExports(Session& session, fs::path folder)
+    : session_(session), folder_(std::move(folder)), writer_(session.executor(), "flow export", Priority::idle) {}
 
 FlowExports::~FlowExports() {
     close();
 }
 
 void FlowExports::close() {
-    stop_ = true;
-    writer_.reset();
+    {
+        const std::lock_guard lock(mutex_);
+        *job_.stop = true;
+    }
+    writer_.close();
     const std::lock_guard lock(mutex_);
     delete_all(job_.folder);
     job_ = {};
-}
-
-const char* FlowExports::name_of(State state) {
-    switch (state) {
-        case State::running:
-            return "running";
-        case State::cancelling:
-            return "cancelling";
-        case State::done:
-            return "done";
-        case State::cancelled:
-            return "cancelled";
-        case State::failed:
-            return "failed";
-        case State::idle:
-            break;
-    }
-    return "idle";
 }
 
 void FlowExports::offer(const std::string& scenario, std::optional<double> interval, const Respond& respond) {
@@ -125,60 +109,61 @@ Response FlowExports::begin(const std::string& scenario, const std::shared_ptr<c
         return error_response(400, possible.error().message);
     }
     const std::lock_guard lock(mutex_);
-    if (job_.state == State::running || job_.state == State::cancelling) {
+    if (job_.is_open()) {
         return error_response(409,
                               fmt::format("The moving flow of scenario {} is being written ({:.0f} %). Wait for it "
                                           "or cancel it.",
                                           job_.scenario, 100 * job_.share));
     }
     delete_all(job_.folder);
-    job_ = {State::running, scenario, "", 0, files_of(wanted.formats), folder_ / fmt::format("flow-{}", ++count_)};
-    stop_ = false;
-    writer_->post([this, flow, wanted, folder = job_.folder] { write(*flow, wanted, folder); });
+    job_ = {};
+    job_.state = Job::State::running;
+    job_.scenario = scenario;
+    job_.files = files_of(wanted.formats);
+    job_.folder = folder_ / fmt::format("flow-{}", ++count_);
+    writer_.post([this, flow, wanted, job = job_] { write(*flow, wanted, job); });
     return json_response(200, describe_now());
 }
 
-void FlowExports::write(const twin::RecordedFlow& flow, const Wanted& wanted, const fs::path& folder) {
-    setpriority(PRIO_PROCESS, 0, niceness);  // of this thread alone
-    const auto go_on = [this](double share) {
+void FlowExports::write(const twin::RecordedFlow& flow, const Wanted& wanted, const Job& job) {
+    const auto go_on = [&](double share) {
         const std::lock_guard lock(mutex_);
         job_.share = share;
-        return !stop_;
+        return !*job.stop;
     };
     try {
         std::error_code failed;
-        fs::create_directories(folder, failed);
-        const Status written = failed ? Status(Error{fmt::format("{}: {}", folder.string(), failed.message())})
-                                      : flow.write(wanted.formats, wanted.interval, folder, go_on);
-        if (written) return end(State::done, "");
-        end(stop_ ? State::cancelled : State::failed, stop_ ? "" : without_folder(written.error().message, folder));
+        fs::create_directories(job.folder, failed);
+        const Status written = failed ? Status(Error{fmt::format("{}: {}", job.folder.string(), failed.message())})
+                                      : flow.write(wanted.formats, wanted.interval, job.folder, go_on);
+        if (written) return end(Job::State::done, "");
+        if (*job.stop) return end(Job::State::cancelled, "");
+        end(Job::State::failed, without_folder(written.error().message, job.folder));
     } catch (const std::exception& error) {  // running out of memory here must not end the live run
-        end(State::failed, fmt::format("The export ended unexpectedly: {}.", error.what()));
+        end(Job::State::failed, fmt::format("The export ended unexpectedly: {}.", error.what()));
     }
 }
 
-void FlowExports::end(State state, std::string message) {
+void FlowExports::end(Job::State state, std::string message) {
     const std::lock_guard lock(mutex_);
-    job_.state = state;
-    job_.message = std::move(message);
-    if (state == State::done) return;
+    job_.end(state, std::move(message));
+    if (state == Job::State::done) return;
     delete_all(job_.folder);
     job_.files.clear();
 }
 
 json FlowExports::describe_now() const {
-    const bool busy = job_.state == State::running || job_.state == State::cancelling;
     json files = json::array();
-    if (job_.state == State::done) {
+    if (job_.state == Job::State::done) {
         for (const std::string& name : job_.files) {
             std::error_code gone;
             const auto bytes = fs::file_size(job_.folder / name, gone);
             if (!gone) files.push_back({{"name", name}, {"bytes", bytes}});
         }
     }
-    return {{"state", name_of(job_.state)},
+    return {{"state", job_.state_name()},
             {"scenario", job_.scenario.empty() ? json() : json(job_.scenario)},
-            {"share", busy ? json(job_.share) : json()},
+            {"share", job_.is_open() ? json(job_.share) : json()},
             {"message", job_.message},
             {"files", std::move(files)}};
 }
@@ -190,9 +175,8 @@ json FlowExports::describe() const {
 
 void FlowExports::cancel() {
     const std::lock_guard lock(mutex_);
-    if (job_.state == State::running || job_.state == State::cancelling) {
-        job_.state = State::cancelling;
-        stop_ = true;
+    if (job_.is_open()) {
+        job_.cancel();
         return;
     }
     delete_all(job_.folder);
@@ -205,7 +189,7 @@ void FlowExports::file(const std::string& name, const Respond& respond) const {
         const std::lock_guard lock(mutex_);
         // A name is compared with those of the files: none leads out of the folder.
         const bool there = std::find(job_.files.begin(), job_.files.end(), name) != job_.files.end();
-        if (there && job_.state == State::done) path = job_.folder / name;
+        if (there && job_.state == Job::State::done) path = job_.folder / name;
     }
     if (path.empty()) {
         return respond(error_response(404, fmt::format("there is no file {} of the moving flow", tidy_name(name, 40))));

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <atomic>
 #include <cstdint>
 #include <filesystem>
 #include <memory>
@@ -11,22 +10,23 @@
 
 #include <nlohmann/json.hpp>
 
+#include "serve/executor.hpp"
 #include "serve/sent_files.hpp"
 #include "serve/session.hpp"
-#include "serve/worker.hpp"
+#include "serve/undertaking.hpp"
 #include "twin/recorded_flow.hpp"
 
 namespace talus::serve {
 
-/// The moving flow of a scenario as files for other programs, from its recording: one at a time for the session, on a
-/// thread of lower priority while the steps continue. Its files are kept until the next one. Functions may be called
-/// from any thread.
+/// The moving flow of a scenario as files for other programs, from its recording: one at a time for the session, at
+/// lower priority while the steps continue. Its files are kept until the next one. Functions may be called from any
+/// thread.
 class FlowExports {
   public:
     /// `folder`: an existing one to write into; it is not removed.
     FlowExports(Session& session, std::filesystem::path folder);
     ~FlowExports();
-    /// Ends its thread and deletes its files. The session must have been closed before.
+    /// Ends its lane and deletes its files. The session must have been closed before.
     void close();
     FlowExports(const FlowExports&) = delete;
     FlowExports& operator=(const FlowExports&) = delete;
@@ -43,10 +43,8 @@ class FlowExports {
     void file(const std::string& name, const Respond& respond) const;
 
   private:
-    enum class State { idle, running, cancelling, done, cancelled, failed };
-    struct Job {
-        State state = State::idle;
-        std::string scenario, message;
+    struct Job : Undertaking {
+        std::string scenario;
         double share = 0;
         std::vector<std::string> files;  ///< names, in the order of their formats
         std::filesystem::path folder;
@@ -55,13 +53,12 @@ class FlowExports {
         std::vector<std::string> formats;
         double interval = 0;  ///< s; 0: that of the scene
     };
-    static const char* name_of(State state);
     [[nodiscard]] static Result<Wanted> read(const std::string& body);
     [[nodiscard]] Response begin(const std::string& scenario, const std::shared_ptr<const twin::RecordedFlow>& flow,
                                  const Wanted& wanted);
-    void write(const twin::RecordedFlow& flow, const Wanted& wanted, const std::filesystem::path& folder);
+    void write(const twin::RecordedFlow& flow, const Wanted& wanted, const Job& job);
     [[nodiscard]] nlohmann::json describe_now() const;
-    void end(State state, std::string message);
+    void end(Job::State state, std::string message);
 
     Session& session_;
     std::filesystem::path folder_;
@@ -69,8 +66,7 @@ class FlowExports {
     Job job_;
     std::uint64_t count_ = 0;  // of folders, for their names
     const std::shared_ptr<SentFiles> sent_ = std::make_shared<SentFiles>();
-    std::atomic<bool> stop_ = false;  // ends the one that is being made
-    std::unique_ptr<Worker> writer_ = std::make_unique<Worker>("flow export");
+    Lane writer_;
 };
 
 }  // namespace talus::serve

@@ -23,7 +23,6 @@ using nlohmann::json;
 constexpr std::array kind_names = {"ensemble", "calibration", "validation", "risk", "options", "design"};
 /// The command of each.
 constexpr std::array command_names = {"ensemble", "calibrate", "validate", "risk", "options", "design"};
-constexpr std::array state_names = {"waiting", "running", "cancelling", "done", "cancelled", "interrupted", "failed"};
 constexpr std::size_t most_cases = 200;
 
 /// Position of a name in a list of names.
@@ -205,14 +204,6 @@ const char* job_kind_name(JobKind kind) {
     return kind_names[static_cast<std::size_t>(kind)];
 }
 
-const char* job_state_name(JobState state) {
-    return state_names[static_cast<std::size_t>(state)];
-}
-
-bool is_open(JobState state) {
-    return state == JobState::waiting || state == JobState::running || state == JobState::cancelling;
-}
-
 Result<WantedJob> read_wanted_job(const json& body) {
     WantedJob wanted;
     if (!body.is_object()) return Error{"the body is an object with kind"};
@@ -333,7 +324,7 @@ std::string job_text(const Job& job) {
     return session::to_text({{"talus_job", 1},
                              {"id", job.id},
                              {"kind", job_kind_name(job.kind)},
-                             {"state", job_state_name(job.state)},
+                             {"state", job.state_name()},
                              {"title", job.title},
                              {"scene", job.scene},
                              {"arguments", job.arguments},
@@ -353,10 +344,10 @@ Result<Job> read_job(const std::string& text) {
     try {
         Job job;
         const auto kind = position(kind_names, file.at("kind").get<std::string>());
-        const auto state = position(state_names, file.at("state").get<std::string>());
-        if (!kind || !state) return Error{"this is a job of another version"};
+        const auto state = position(Job::state_names, file.at("state").get<std::string>());
+        if (!kind || !state || *state == 0) return Error{"this is a job of another version"};
         job.kind = static_cast<JobKind>(*kind);
-        job.state = static_cast<JobState>(*state);
+        job.state = static_cast<Job::State>(*state);
         file.at("id").get_to(job.id);
         file.at("title").get_to(job.title);
         file.at("scene").get_to(job.scene);

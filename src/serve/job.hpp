@@ -3,7 +3,6 @@
 #include <cstddef>
 #include <filesystem>
 #include <functional>
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -13,20 +12,17 @@
 #include "core/result.hpp"
 #include "design/design.hpp"
 #include "ensemble/plan.hpp"
+#include "serve/undertaking.hpp"
 
 /// A job of the start page: an ensemble, a calibration, a validation, risk, options or the design of a barrier that a
 /// command of the program computes.
 namespace talus::serve {
 
 enum class JobKind { ensemble, calibration, validation, risk, options, design };
-enum class JobState { waiting, running, cancelling, done, cancelled, interrupted, failed };
 
 /// Counts what is at risk, or compares options.
 [[nodiscard]] bool is_risk(JobKind kind);
 [[nodiscard]] const char* job_kind_name(JobKind kind);
-[[nodiscard]] const char* job_state_name(JobState state);
-/// Waiting, running or cancelling.
-[[nodiscard]] bool is_open(JobState state);
 
 /// What one request can ask for.
 struct JobLimits {
@@ -57,19 +53,18 @@ struct WantedJob {
 [[nodiscard]] std::vector<std::string> arguments_of(const WantedJob& wanted, const std::filesystem::path& scene,
                                                     const std::filesystem::path& folder);
 
-struct Job {
+struct Job : Undertaking {
+    Job() { state = State::waiting; }
+
     std::string id;  ///< also the name of its folder: "ensemble-3"
     JobKind kind = JobKind::ensemble;
-    JobState state = JobState::waiting;
     std::string title;                   ///< of its scene; of a validation which cases
     std::string scene;                   ///< id of its scene; empty: a validation
     std::vector<std::string> arguments;  ///< as arguments_of()
-    std::string message;                 ///< how it ended, where there is more to say than its state
     std::string begun_at, ended_at;      ///< UTC; empty: not yet
     long process = 0;                    ///< of the program that has it
     // Runs, or cases of a validation.
     std::size_t done = 0, failed = 0, count = 0;
-    std::optional<double> wall_remaining{};  ///< s
 };
 
 /// As a line for a shell.

@@ -177,12 +177,18 @@ Response of(const Result<json>& content, int refused) {
 }  // namespace
 
 JobForms::~JobForms() {
-    ++asked_;
-    worker_.reset();
+    (void)begin_estimate();  // ends the one under way
+    lane_.close();
+}
+
+JobForms::Stop JobForms::begin_estimate() {
+    const std::lock_guard lock(mutex_);
+    *stop_ = true;
+    return stop_ = std::make_shared<std::atomic<bool>>(false);
 }
 
 void JobForms::describe(const KnownScene& scene, const Respond& respond) {
-    worker_->post([scene, respond] {
+    lane_.post([scene, respond] {
         const auto loaded = load(scene);
         if (!loaded) return respond(error_response(409, loaded.error().message));
         respond(json_response(200, form_json((*loaded)->scene)));
@@ -190,23 +196,15 @@ void JobForms::describe(const KnownScene& scene, const Respond& respond) {
 }
 
 void JobForms::estimate(const KnownScene& scene, const Respond& respond) {
-    worker_->post([this, scene, respond, asked = ++asked_] {
+    lane_.post([scene, respond, stop = begin_estimate()] {
         const auto estimated = [&]() -> Result<json> {
-            if (asked != asked_) return Error{"another estimate was asked for"};
+            if (*stop) return Error{"another estimate was asked for"};
             TALUS_ASSIGN(const auto loaded, load(scene));
             if (loaded->scene.spec.solver.model != params::ModelChoice::particles) {
                 return Error{"there is no estimate for the depth-averaged model"};
             }
-            std::atomic<bool> stop{false};
-            // Looks at the counter for as long as it takes.
-            std::jthread look([&](const std::stop_token& over) {
-                while (!over.stop_requested() && asked == asked_) {
-                    std::this_thread::sleep_for(std::chrono::milliseconds(50));
-                }
-                stop = asked != asked_;
-            });
-            TALUS_ASSIGN(const auto rehearsal, run::rehearse(loaded->scene, particle_spacing(loaded->scene), stop));
-            if (asked != asked_) return Error{"another estimate was asked for"};
+            TALUS_ASSIGN(const auto rehearsal, run::rehearse(loaded->scene, particle_spacing(loaded->scene), *stop));
+            if (*stop) return Error{"another estimate was asked for"};
             return estimate_json(loaded->scene, rehearsal);
         }();
         respond(of(estimated, 409));
@@ -214,12 +212,12 @@ void JobForms::estimate(const KnownScene& scene, const Respond& respond) {
 }
 
 void JobForms::cases(const Respond& respond) {
-    worker_->post([respond] { respond(of(cases_json(), 500)); });
+    lane_.post([respond] { respond(of(cases_json(), 500)); });
 }
 
 void JobForms::check(const WantedJob& wanted, const KnownScene& scene, const Respond& respond,
                      std::function<void()> then) {
-    worker_->post([wanted, scene, respond, then = std::move(then)] {
+    lane_.post([wanted, scene, respond, then = std::move(then)] {
         const auto checked = [&]() -> Status {
             TALUS_ASSIGN(const auto loaded, load(scene));
             if (wanted.kind == JobKind::ensemble) {

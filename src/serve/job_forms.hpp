@@ -3,19 +3,20 @@
 #include <atomic>
 #include <functional>
 #include <memory>
+#include <mutex>
 
+#include "serve/executor.hpp"
 #include "serve/job.hpp"
 #include "serve/library.hpp"
 #include "serve/message.hpp"
-#include "serve/worker.hpp"
 
 namespace talus::serve {
 
 /// What a job may be given before it starts: the factors of a scene, what a run of it costs here, the cases. Scenes are
-/// loaded and tried on a thread of their own. Functions may be called from any thread.
+/// loaded and tried on a lane. Functions may be called from any thread.
 class JobForms {
   public:
-    JobForms() = default;
+    explicit JobForms(Executor& executor) : lane_(executor, "job-forms") {}
     ~JobForms();
     JobForms(const JobForms&) = delete;
     JobForms& operator=(const JobForms&) = delete;
@@ -30,8 +31,13 @@ class JobForms {
     void check(const WantedJob& wanted, const KnownScene& scene, const Respond& respond, std::function<void()> then);
 
   private:
-    std::atomic<int> asked_{0};  // estimates, so that an earlier one can see that it is not wanted any more
-    std::unique_ptr<Worker> worker_ = std::make_unique<Worker>("job-forms");
+    using Stop = std::shared_ptr<std::atomic<bool>>;
+    /// Of the latest estimate, after it has ended an earlier one.
+    [[nodiscard]] Stop begin_estimate();
+
+    std::mutex mutex_;  // guards the following
+    Stop stop_ = std::make_shared<std::atomic<bool>>(false);
+    Lane lane_;
 };
 
 }  // namespace talus::serve

@@ -37,22 +37,20 @@ std::string last_error(const std::string& words) {
     return tidy_name(words.substr(from, words.find('\n', from) - from), 2000);
 }
 
-void end(Job& job, JobState state, std::string message) {
-    job.state = state;
+void end(Job& job, Job::State state, std::string message) {
+    job.end(state, std::move(message));
     job.ended_at = utc_now();
-    job.wall_remaining.reset();
-    if (!message.empty() || state != JobState::done) job.message = std::move(message);
 }
 
 /// How the command's end is one of the job.
-void end_with(Job& job, const Result<ChildOutcome>& outcome, bool stopped, bool closing) {
-    if (!outcome) return end(job, JobState::failed, outcome.error().message);
+void end_with(Job& job, const Result<ChildOutcome>& outcome, bool closing) {
+    if (!outcome) return end(job, Job::State::failed, outcome.error().message);
     if (outcome->success() || (outcome->exit_code == case_failed && job.kind == JobKind::validation)) {
-        return end(job, JobState::done, "");
+        return end(job, Job::State::done, "");
     }
-    if (stopped) return end(job, JobState::cancelled, "");
+    if (*job.stop) return end(job, Job::State::cancelled, "");
     if (closing || outcome->exit_code == interrupted) {
-        return end(job, JobState::interrupted, "talus ended before it was complete");
+        return end(job, Job::State::interrupted, "talus ended before it was complete");
     }
     if (outcome->signal != 0) {
         // The system ends programs by SIGKILL when the memory is full; other signals come from people or from faults.
@@ -60,17 +58,17 @@ void end_with(Job& job, const Result<ChildOutcome>& outcome, bool stopped, bool 
                                 : outcome->signal == SIGTERM ? ": somebody or the system ended it"
                                                              : "";
         return end(
-            job, JobState::failed,
+            job, Job::State::failed,
             fmt::format("its process was ended by signal {} ({}){}", outcome->signal, strsignal(outcome->signal), why));
     }
     std::string said = last_error(outcome->stderr_tail);
-    end(job, JobState::failed, said.empty() ? fmt::format("exit code {}", outcome->exit_code) : std::move(said));
+    end(job, Job::State::failed, said.empty() ? fmt::format("exit code {}", outcome->exit_code) : std::move(said));
 }
 
 }  // namespace
 
-Jobs::Jobs(fs::path folder, fs::path program)
-    : folder_(std::move(folder)), program_(std::move(program)), worker_(std::make_unique<Worker>("jobs")) {
+Jobs::Jobs(Executor& executor, fs::path folder, fs::path program)
+    : folder_(std::move(folder)), program_(std::move(program)), lane_(executor, "jobs") {
     if (!program_.empty()) load();
 }
 
@@ -80,13 +78,13 @@ Jobs::~Jobs() {
         const std::lock_guard lock(mutex_);
         for (const auto& [id, entry] : entries_) {
             Job& job = entry->job;
-            if (job.state == JobState::waiting && job.process == getpid()) {
-                end(job, JobState::interrupted, "talus ended before it was begun");
+            if (job.state == Job::State::waiting && job.process == getpid()) {
+                end(job, Job::State::interrupted, "talus ended before it was begun");
                 (void)keep(job).ok();
             }
         }
     }
-    worker_.reset();
+    lane_.close();
 }
 
 void Jobs::load() {
@@ -96,8 +94,8 @@ void Jobs::load() {
         const auto text = read_whole(it->path(), longest_job);
         auto job = text ? read_job(*text) : Result<Job>(text.error());
         if (!job || job->id != it->path().stem()) continue;
-        if (is_open(job->state) && !process_lives(job->process)) {
-            end(*job, JobState::interrupted, "talus ended before it was complete");
+        if (job->is_open() && !process_lives(job->process)) {
+            end(*job, Job::State::interrupted, "talus ended before it was complete");
         }
         auto entry = std::make_shared<Entry>();
         entry->job = std::move(*job);
@@ -118,10 +116,10 @@ json Jobs::describe() const {
     for (const EntryPtr& entry : sorted) {
         const Job& job = entry->job;
         const fs::path folder = folder_ / job.id;
-        const bool done = job.state == JobState::done && fs::exists(folder / report_of(job.kind), error);
+        const bool done = job.state == Job::State::done && fs::exists(folder / report_of(job.kind), error);
         list.push_back({{"id", job.id},
                         {"kind", job_kind_name(job.kind)},
-                        {"state", job_state_name(job.state)},
+                        {"state", job.state_name()},
                         {"title", job.title},
                         {"message", job.message},
                         {"begun_at", job.begun_at},
@@ -140,7 +138,7 @@ json Jobs::describe() const {
 Result<Jobs::EntryPtr> Jobs::find(const std::string& id) const {
     const auto found = entries_.find(id);
     if (found == entries_.end()) return Error{"there is no job of this id; reload the page"};
-    if (is_open(found->second->job.state) && found->second->job.process != getpid()) {
+    if (found->second->job.is_open() && found->second->job.process != getpid()) {
         return Error{"another talus that runs on this computer has this job"};
     }
     return found->second;
@@ -149,7 +147,7 @@ Result<Jobs::EntryPtr> Jobs::find(const std::string& id) const {
 Status Jobs::check_room() const {
     if (program_.empty()) return Error{"this server starts no jobs"};
     const auto waiting = std::count_if(entries_.begin(), entries_.end(),
-                                       [](const auto& e) { return e.second->job.state == JobState::waiting; });
+                                       [](const auto& e) { return e.second->job.state == Job::State::waiting; });
     if (waiting >= static_cast<long>(most_waiting)) {
         return Error{fmt::format("{} jobs wait already, the most there can be; cancel one", waiting)};
     }
@@ -178,12 +176,12 @@ Status Jobs::keep(const Job& job) const {
 
 void Jobs::queue(const EntryPtr& entry) {
     Job& job = entry->job;
-    job.state = JobState::waiting;
+    job.state = Job::State::waiting;
     job.process = getpid();
     job.message.clear();
     job.ended_at.clear();
-    entry->stop = false;
-    worker_->post([this, entry] { run(entry); });
+    *job.stop = false;
+    lane_.post([this, entry] { run(entry); });
 }
 
 Result<std::string> Jobs::add(const WantedJob& wanted, const std::optional<KnownScene>& scene) {
@@ -234,17 +232,17 @@ void Jobs::run(const EntryPtr& entry) {
     {
         const std::lock_guard lock(mutex_);
         Job& job = entry->job;
-        if (job.state != JobState::waiting || closing_) return;
+        if (job.state != Job::State::waiting || closing_) return;
         std::error_code error;
         fs::create_directories(folder_ / job.id, error);
-        job.state = JobState::running;
-        if (const Status kept = keep(job); !kept) return end(job, JobState::failed, kept.error().message);
+        job.state = Job::State::running;
+        if (const Status kept = keep(job); !kept) return end(job, Job::State::failed, kept.error().message);
         child.program = program_;
         child.arguments = words_of(job);
         child.folder = folder_;
     }
     child.niceness = job_niceness;
-    child.shall_end = [&] { return entry->stop || closing_; };
+    child.shall_end = [&] { return *entry->job.stop || closing_; };
     child.on_line = [&](const std::string& line) {
         const auto event = parse_json(line);
         if (!event) return;
@@ -253,7 +251,7 @@ void Jobs::run(const EntryPtr& entry) {
     };
     const auto outcome = run_child(child);
     const std::lock_guard lock(mutex_);
-    end_with(entry->job, outcome, entry->stop, closing_);
+    end_with(entry->job, outcome, closing_);
     // That its record cannot be written does not change what became of it.
     if (const Status kept = keep(entry->job); !kept) entry->job.message = kept.error().message;
 }
@@ -262,20 +260,17 @@ Status Jobs::cancel(const std::string& id) {
     const std::lock_guard lock(mutex_);
     TALUS_ASSIGN(const EntryPtr entry, find(id));
     Job& job = entry->job;
-    if (job.state == JobState::waiting) {
-        end(job, JobState::cancelled, "");
-        return keep(job);
-    }
-    if (job.state == JobState::running) job.state = JobState::cancelling;
-    if (job.state != JobState::cancelling) return Error{"this job has ended already"};
-    entry->stop = true;
-    return {};
+    if (!job.is_open()) return Error{"this job has ended already"};
+    job.cancel();
+    if (job.is_open()) return {};
+    job.ended_at = utc_now();
+    return keep(job);
 }
 
 Status Jobs::resume(const std::string& id) {
     const std::lock_guard lock(mutex_);
     TALUS_ASSIGN(const EntryPtr entry, find(id));
-    if (is_open(entry->job.state) || entry->job.state == JobState::done) {
+    if (entry->job.is_open() || entry->job.state == Job::State::done) {
         return Error{"this job is not one that ended early"};
     }
     TALUS_TRY(check_room());
@@ -286,7 +281,7 @@ Status Jobs::resume(const std::string& id) {
 Status Jobs::remove(const std::string& id) {
     const std::lock_guard lock(mutex_);
     TALUS_ASSIGN(const EntryPtr entry, find(id));
-    if (is_open(entry->job.state)) return Error{"this job goes on; cancel it first"};
+    if (entry->job.is_open()) return Error{"this job goes on; cancel it first"};
     std::error_code error;
     fs::remove_all(folder_ / id, error);
     if (!error) fs::remove(folder_ / (id + ".json"), error);
@@ -311,7 +306,7 @@ Result<Jobs::Finished> Jobs::ensemble(const std::string& id) const {
     const std::lock_guard lock(mutex_);
     TALUS_ASSIGN(const EntryPtr entry, find(id));
     const Job& job = entry->job;
-    if (job.kind != JobKind::ensemble || job.state != JobState::done) return Error{"this is no finished ensemble"};
+    if (job.kind != JobKind::ensemble || job.state != Job::State::done) return Error{"this is no finished ensemble"};
     return Finished{job.scene, folder_ / id};
 }
 

@@ -12,10 +12,10 @@
 #include <nlohmann/json.hpp>
 
 #include "core/result.hpp"
+#include "serve/executor.hpp"
 #include "serve/job.hpp"
 #include "serve/library.hpp"
 #include "serve/message.hpp"
-#include "serve/worker.hpp"
 
 namespace talus::serve {
 
@@ -27,7 +27,7 @@ class Jobs {
     static constexpr std::size_t most_waiting = 8, most_kept = 200;
 
     /// `program`: the one to run; empty: there are no jobs. What a program that died left open is interrupted now.
-    Jobs(std::filesystem::path folder, std::filesystem::path program);
+    Jobs(Executor& executor, std::filesystem::path folder, std::filesystem::path program);
     ~Jobs();
     Jobs(const Jobs&) = delete;
     Jobs& operator=(const Jobs&) = delete;
@@ -56,7 +56,6 @@ class Jobs {
     struct Entry {
         Job job;
         std::string ticket;  ///< of its report: a link that needs no token
-        std::atomic<bool> stop{false};
     };
     using EntryPtr = std::shared_ptr<Entry>;
     void load();
@@ -73,7 +72,7 @@ class Jobs {
     std::atomic<bool> closing_{false};
     mutable std::mutex mutex_;  // guards the following
     std::map<std::string, EntryPtr> entries_;
-    std::unique_ptr<Worker> worker_;
+    Lane lane_;  // a task for each job, which waits for its process
 };
 
 }  // namespace talus::serve

@@ -8,16 +8,17 @@
 
 namespace talus::serve {
 
-Result<std::unique_ptr<Loop>> Loop::start(std::shared_ptr<const scene::Scene> scene, twin::ScenarioOptions options,
-                                          Watcher& watcher, std::function<void(std::string)> failed) {
+Result<std::unique_ptr<Loop>> Loop::start(Executor& executor, std::shared_ptr<const scene::Scene> scene,
+                                          twin::ScenarioOptions options, Watcher& watcher,
+                                          std::function<void(std::string)> failed) {
     auto threads = std::make_unique<run::Threads>(scene->spec.solver.thread_count);
     TALUS_ASSIGN(auto first,
                  threads->execute([&] { return twin::Scenario::open(std::move(scene), std::move(options)); }));
-    return std::unique_ptr<Loop>(new Loop(std::move(threads), std::move(first), watcher, std::move(failed)));
+    return std::unique_ptr<Loop>(new Loop(executor, std::move(threads), std::move(first), watcher, std::move(failed)));
 }
 
-Loop::Loop(std::unique_ptr<run::Threads> threads, std::unique_ptr<twin::Scenario> first, Watcher& watcher,
-           std::function<void(std::string)> failed)
+Loop::Loop(Executor& executor, std::unique_ptr<run::Threads> threads, std::unique_ptr<twin::Scenario> first,
+           Watcher& watcher, std::function<void(std::string)> failed)
     : threads_(std::move(threads)),
       scenarios_(std::move(first), watcher,
                  [this](session::Work work, std::function<void()> then) {
@@ -27,6 +28,7 @@ Loop::Loop(std::unique_ptr<run::Threads> threads, std::unique_ptr<twin::Scenario
                      });
                  }),
       failed_(std::move(failed)),
+      preparer_(executor, "preparer"),
       thread_([this] { run(); }) {}
 
 Loop::~Loop() {

@@ -11,7 +11,7 @@
 
 #include "core/result.hpp"
 #include "run/threads.hpp"
-#include "serve/worker.hpp"
+#include "serve/executor.hpp"
 #include "session/scenarios.hpp"
 
 namespace talus::serve {
@@ -33,7 +33,8 @@ class Loop {
     /// Opens the scene as scenario A, paused at time 0. Threads as `solver.thread_count` says. `watcher` is called from
     /// the loop's thread, `failed` is called there once on a failure such as lack of memory; nothing runs after that.
     /// Errors: as twin::Scenario::open.
-    [[nodiscard]] static Result<std::unique_ptr<Loop>> start(std::shared_ptr<const scene::Scene> scene,
+    [[nodiscard]] static Result<std::unique_ptr<Loop>> start(Executor& executor,
+                                                             std::shared_ptr<const scene::Scene> scene,
                                                              twin::ScenarioOptions options, Watcher& watcher,
                                                              std::function<void(std::string)> failed);
     /// Ends after the current step or task; waiting tasks are discarded.
@@ -44,8 +45,8 @@ class Loop {
     void post(Task task);
 
   private:
-    Loop(std::unique_ptr<run::Threads> threads, std::unique_ptr<twin::Scenario> first, Watcher& watcher,
-         std::function<void(std::string)> failed);
+    Loop(Executor& executor, std::unique_ptr<run::Threads> threads, std::unique_ptr<twin::Scenario> first,
+         Watcher& watcher, std::function<void(std::string)> failed);
     void run();
     void work_until_done();
 
@@ -57,7 +58,7 @@ class Loop {
     std::condition_variable wake_;
     std::deque<Task> tasks_;
     bool done_ = false;
-    Worker preparer_{"preparer"};
+    Lane preparer_;
     std::thread thread_;
 };
 

@@ -10,20 +10,22 @@
 
 namespace talus::serve {
 
-OpenSession::OpenSession(Thread thread, std::shared_ptr<const scene::Scene> scene, const ServerOptions& options)
-    : session(std::move(thread), scene, options.tokens),
+OpenSession::OpenSession(Thread thread, Executor& executor, std::shared_ptr<const scene::Scene> scene,
+                         const ServerOptions& options)
+    : session(std::move(thread), executor, scene, options.tokens),
       exports(session, options.export_folder, options.calibration.source),
-      calibrations(scene, options.calibration,
+      calibrations(executor, scene, options.calibration,
                    [this](nlohmann::json status) { session.calibration(std::move(status)); }),
       alerts(session, std::move(scene), options.alerts),
       depth_averaged(session),
       overlays(session, options.export_folder / "overlays", options.reader, options.tiles),
       flows(session, options.export_folder) {}
 
-Result<OpenSessionPtr> OpenSession::open(const Thread& thread, const std::shared_ptr<const scene::Scene>& scene,
-                                         const ServerOptions& options, std::vector<OpeningScenario> scenarios,
-                                         std::vector<Overlay> laid, const std::vector<TileAddress>& tiles) {
-    auto made = std::make_shared<OpenSession>(thread, scene, options);
+Result<OpenSessionPtr> OpenSession::open(const Thread& thread, Executor& executor,
+                                         const std::shared_ptr<const scene::Scene>& scene, const ServerOptions& options,
+                                         std::vector<OpeningScenario> scenarios, std::vector<Overlay> laid,
+                                         const std::vector<TileAddress>& tiles) {
+    auto made = std::make_shared<OpenSession>(thread, executor, scene, options);
     TALUS_ASSIGN(made->ensembles, Ensembles::read(options.ensembles, *scene));
     const auto on_failure = options.on_failure ? options.on_failure : [](const std::string&) {};
     TALUS_TRY(made->session.open(options.scenario, on_failure));
@@ -61,7 +63,7 @@ Result<OpenSessionPtr> OpenSession::open(const Thread& thread, const std::shared
 }
 
 void OpenSession::close() {
-    // Threads end while everything that they notify still exists.
+    // Threads and lanes end while everything that they notify still exists.
     twin_page.close();
     calibrations.close();
     alerts.close();

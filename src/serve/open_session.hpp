@@ -28,20 +28,21 @@ struct OpeningScenario {
 
 /// A session with all that belongs to it, and the routes to it.
 struct OpenSession {
-    OpenSession(Thread thread, std::shared_ptr<const scene::Scene> scene, const ServerOptions& options);
+    OpenSession(Thread thread, Executor& executor, std::shared_ptr<const scene::Scene> scene,
+                const ServerOptions& options);
     ~OpenSession() { close(); }
     OpenSession(const OpenSession&) = delete;
     OpenSession& operator=(const OpenSession&) = delete;
 
     /// From any thread. `scenarios`: in place of one at time 0. Errors: the scene cannot be run, an ensemble cannot be
     /// shown on it.
-    [[nodiscard]] static Result<std::shared_ptr<OpenSession>> open(const Thread& thread,
+    [[nodiscard]] static Result<std::shared_ptr<OpenSession>> open(const Thread& thread, Executor& executor,
                                                                    const std::shared_ptr<const scene::Scene>& scene,
                                                                    const ServerOptions& options,
                                                                    std::vector<OpeningScenario> scenarios = {},
                                                                    std::vector<Overlay> overlays = {},
                                                                    const std::vector<TileAddress>& tiles = {});
-    /// Ends the threads; requests that wait are not answered. Nobody may use the session any more.
+    /// Ends thread and lanes; requests that wait are not answered. Nobody may use the session any more.
     void close();
     /// From any thread but the server's: closes a session that the server's thread may have tasks of, and lets it go
     /// there, once those and what they have posted in turn are done.

@@ -116,13 +116,13 @@ class Overlays::Taking : public Intake {
     void take(std::string piece, std::function<void(std::optional<Response>)> then) override {
         if (refused_) return then(std::exchange(refused_, {}));
         // The connection holds this object until it is told.
-        overlays_.worker_->post([this, piece = std::move(piece), then = std::move(then)] { then(write(piece)); });
+        overlays_.lane_.post([this, piece = std::move(piece), then = std::move(then)] { then(write(piece)); });
     }
     void finish(const Respond& respond) override {
         if (refused_) return respond(std::move(*refused_));
         // The connection may let go of this object before the file is read.
-        overlays_.worker_->post([&overlays = overlays_, name = name_, by = by_, respond,
-                                 folder = std::exchange(folder_, {}), closed = close_file()] {
+        overlays_.lane_.post([&overlays = overlays_, name = name_, by = by_, respond,
+                              folder = std::exchange(folder_, {}), closed = close_file()] {
             const auto read_all = [&]() -> Result<std::vector<Overlay>> {
                 try {
                     TALUS_TRY(closed);
@@ -170,7 +170,7 @@ Overlays::Overlays(Session& session, fs::path folder, geo::ForeignReader reader,
 
 void Overlays::close() {
     *stop_ = true;
-    worker_.reset();
+    lane_.close();
 }
 
 Result<std::vector<Overlay>> Overlays::read(const std::string& name, const fs::path& folder) const {

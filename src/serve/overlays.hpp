@@ -9,16 +9,16 @@
 #include <vector>
 
 #include "geo/foreign.hpp"
+#include "serve/executor.hpp"
 #include "serve/overlay.hpp"
 #include "serve/router.hpp"
 #include "serve/session.hpp"
 #include "serve/tile_addresses.hpp"
-#include "serve/worker.hpp"
 
 namespace talus::serve {
 
 /// The overlays of a session, from bottom to top: everybody sees the same. For the server's thread; files are read on a
-/// thread of their own, each by a process of its own.
+/// lane, each by a process of its own.
 class Overlays {
   public:
     /// `folder`: for files on their way. `tiles`: addresses of map tiles that the program was started with.
@@ -53,7 +53,7 @@ class Overlays {
 
   private:
     class Taking;
-    /// On the worker's thread: what lies in `folder` as it came.
+    /// On the lane: what lies in `folder` as it came.
     [[nodiscard]] Result<std::vector<Overlay>> read(const std::string& name, const std::filesystem::path& folder) const;
     /// Of what was read; answers.
     void add(std::vector<Overlay> overlays, const Respond& respond);
@@ -75,7 +75,7 @@ class Overlays {
     int numbers_ = 0;
     std::atomic<int> uploads_ = 0;
     const std::shared_ptr<std::atomic<bool>> stop_ = std::make_shared<std::atomic<bool>>(false);
-    std::unique_ptr<Worker> worker_ = std::make_unique<Worker>("overlays");
+    Lane lane_{session_.executor(), "overlays"};
 };
 
 }  // namespace talus::serve

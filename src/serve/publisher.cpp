@@ -13,9 +13,9 @@
 #include "geo/latitude.hpp"
 #include "pack/pack.hpp"
 #include "publish/engine.hpp"
+#include "serve/executor.hpp"
 #include "serve/library.hpp"
 #include "serve/server.hpp"
-#include "serve/worker.hpp"
 #include "session/json_text.hpp"
 
 namespace talus::serve {
@@ -23,7 +23,7 @@ namespace {
 
 using nlohmann::json;
 
-/// An open session without a server: a thread stands for the server's.
+/// An open session without a server: a lane stands for the server's.
 class Hall {
   public:
     [[nodiscard]] Status open(ToPublish& wanted) {
@@ -31,16 +31,16 @@ class Hall {
         options.export_folder = wanted.folder;
         options.scenario.overrides = wanted.overrides;
         options.tokens = {"-", "-"};
-        TALUS_ASSIGN(session_, OpenSession::open(thread_, wanted.scene, options, std::move(wanted.scenarios),
+        TALUS_ASSIGN(session_, OpenSession::open(thread_, executor_, wanted.scene, options, std::move(wanted.scenarios),
                                                  std::move(wanted.overlays)));
         return {};
     }
     ~Hall() {
         if (!session_) return;
         OpenSession::retire(thread_, std::move(session_));
-        // The thread lets the session go two tasks later.
+        // The lane lets the session go two tasks later.
         std::promise<void> gone;
-        worker_.post([&] { worker_.post([&] { worker_.post([&] { gone.set_value(); }); }); });
+        lane_.post([&] { lane_.post([&] { lane_.post([&] { gone.set_value(); }); }); });
         gone.get_future().wait();
     }
     Hall() = default;
@@ -49,8 +49,9 @@ class Hall {
     [[nodiscard]] OpenSession& session() { return *session_; }
 
   private:
-    Worker worker_{"publisher"};
-    Thread thread_{[this](std::function<void()> task) { worker_.post(std::move(task)); },
+    Executor executor_;
+    Lane lane_{executor_, "publisher"};
+    Thread thread_{[this](std::function<void()> task) { lane_.post(std::move(task)); },
                    [](std::chrono::milliseconds) {}};  // nobody waits for lists of people
     OpenSessionPtr session_;
 };

@@ -18,6 +18,7 @@
 #include "core/try.hpp"
 #include "serve/api.hpp"
 #include "serve/connection.hpp"
+#include "serve/executor.hpp"
 #include "serve/open_session.hpp"
 #include "serve/sharing.hpp"
 #include "serve/start.hpp"
@@ -64,6 +65,7 @@ struct Server::Parts {
     [[nodiscard]] Thread thread_of_session();
     void listen_for(OpenSessionPtr open);
 
+    Executor executor;
     // Connections end with `io`, and so before the objects that they use.
     ServerOptions options;
     std::optional<Start> start;
@@ -146,7 +148,7 @@ Result<std::unique_ptr<Server>> Server::listen(ServerOptions options) {
 
 Status Server::serve(const std::shared_ptr<const scene::Scene>& scene) {
     Parts& parts = *parts_;
-    TALUS_ASSIGN(auto open, OpenSession::open(parts.thread_of_session(), scene, parts.options));
+    TALUS_ASSIGN(auto open, OpenSession::open(parts.thread_of_session(), parts.executor, scene, parts.options));
     parts.listen_for(std::move(open));
     return {};
 }
@@ -156,7 +158,7 @@ void Server::start(StartSettings settings) {
     parts.options.reader = settings.reader;
     const std::filesystem::path file = settings.file;
     parts.start.emplace(std::move(settings), parts.options,
-                        Start::Host{parts.thread_of_session(), [&parts] { return parts.context->open; },
+                        Start::Host{parts.thread_of_session(), parts.executor, [&parts] { return parts.context->open; },
                                     [&parts](OpenSessionPtr open) { parts.context->open = std::move(open); }});
     if (!file.empty()) {
         asio::post(parts.io, [&parts, file] { parts.start->open_file(file); });

@@ -7,8 +7,8 @@ namespace talus::serve {
 using nlohmann::json;
 using session::Kept;
 
-Session::Session(Thread thread, std::shared_ptr<const scene::Scene> scene, Tokens tokens)
-    : thread_(std::move(thread)), scene_(std::move(scene)), tokens_(std::move(tokens)) {}
+Session::Session(Thread thread, Executor& executor, std::shared_ptr<const scene::Scene> scene, Tokens tokens)
+    : thread_(std::move(thread)), executor_(executor), scene_(std::move(scene)), tokens_(std::move(tokens)) {}
 
 Session::~Session() {
     close();
@@ -16,8 +16,8 @@ Session::~Session() {
 
 void Session::close() {
     loop_.reset();
-    packer_.reset();
-    worker_.reset();
+    packer_.close();
+    worker_.close();
 }
 
 Status Session::open(twin::ScenarioOptions options, std::function<void(std::string)> failed) {
@@ -35,7 +35,7 @@ Status Session::open(twin::ScenarioOptions options, std::function<void(std::stri
         if (loop_) loop_->post([audience = std::move(audience)](Scenarios& all) { all.set_audience(audience); });
     };
     room_ = std::make_unique<session::Room>(std::move(room));
-    TALUS_ASSIGN(loop_, Loop::start(scene_, std::move(options), *this, std::move(failed)));
+    TALUS_ASSIGN(loop_, Loop::start(executor_, scene_, std::move(options), *this, std::move(failed)));
     return {};
 }
 
@@ -77,7 +77,7 @@ void Session::frames(FrameSet set) {
     const auto index = static_cast<std::size_t>(set.scenario);
     arrived_[index] = std::move(set);
     if (std::exchange(packing_posted_, true)) return;
-    packer_->post([this] { pack_frames(); });
+    packer_.post([this] { pack_frames(); });
 }
 
 void Session::pack_frames() {

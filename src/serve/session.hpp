@@ -12,8 +12,8 @@
 #include <vector>
 
 #include "serve/access.hpp"
+#include "serve/executor.hpp"
 #include "serve/loop.hpp"
-#include "serve/worker.hpp"
 #include "session/room.hpp"
 
 namespace talus::serve {
@@ -28,16 +28,16 @@ struct Thread {
     std::function<void(std::chrono::milliseconds)> tick_after;  ///< calls Session::tick once, after a while
 };
 
-/// A session across threads: its room on the server's thread, its scenarios on the loop's, frames packed on a third.
+/// A session across threads: its room on the server's thread, its scenarios on the loop's, frames packed on a lane.
 /// Everything but the functions of Watcher is for the server's thread.
 class Session final : public Watcher {
   public:
-    Session(Thread thread, std::shared_ptr<const scene::Scene> scene, Tokens tokens);
+    Session(Thread thread, Executor& executor, std::shared_ptr<const scene::Scene> scene, Tokens tokens);
     ~Session() override;
 
     /// Opens the scene; once, before anything else. Errors: as Loop::start.
     [[nodiscard]] Status open(twin::ScenarioOptions options, std::function<void(std::string)> failed);
-    /// Ends the threads; pending requests are not answered.
+    /// Ends thread and lanes; pending requests are not answered.
     void close();
 
     // As session::Room has it.
@@ -52,7 +52,8 @@ class Session final : public Watcher {
 
     [[nodiscard]] Loop& loop() { return *loop_; }
     /// For work of fractions of a second that should not delay either thread.
-    [[nodiscard]] Worker& worker() { return *worker_; }
+    [[nodiscard]] Lane& worker() { return worker_; }
+    [[nodiscard]] Executor& executor() { return executor_; }
     [[nodiscard]] const std::shared_ptr<const scene::Scene>& scene() const { return scene_; }
 
     /// Sends the state of a calibration to everybody, also to those who join later; from any thread.
@@ -90,6 +91,7 @@ class Session final : public Watcher {
     void arm_tick();
 
     Thread thread_;
+    Executor& executor_;
     std::shared_ptr<const scene::Scene> scene_;
     Tokens tokens_;
     std::unique_ptr<session::Room> room_;
@@ -104,8 +106,7 @@ class Session final : public Watcher {
     std::array<std::optional<session::PackedFrames>, Scenarios::max_count> packed_;
     bool packing_posted_ = false, delivery_posted_ = false;
 
-    std::unique_ptr<Worker> worker_ = std::make_unique<Worker>("worker");
-    std::unique_ptr<Worker> packer_ = std::make_unique<Worker>("packer");  // compresses frames
+    Lane worker_{executor_, "worker"}, packer_{executor_, "packer"};  // the latter compresses frames
     std::unique_ptr<Loop> loop_;
 };
 

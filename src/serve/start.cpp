@@ -57,21 +57,22 @@ Start::Start(StartSettings settings, ServerOptions options, Host host)
       options_(std::move(options)),
       host_(std::move(host)),
       library_(settings_.folder),
-      drafts_(std::make_unique<Drafts>(settings_.folder, settings_.uploads, options_.export_folder, settings_.reader)),
-      jobs_(std::make_unique<Jobs>(settings_.folder / "jobs", settings_.program)) {}
+      drafts_(std::make_unique<Drafts>(host_.executor, settings_.folder, settings_.uploads, options_.export_folder,
+                                       settings_.reader)),
+      jobs_(std::make_unique<Jobs>(host_.executor, settings_.folder / "jobs", settings_.program)) {}
 
 Start::~Start() {
     close();
 }
 
 void Start::close() {
-    if (!files_) return;  // closed before; the host may be gone
+    if (std::exchange(closed_, true)) return;  // the host may be gone
     stop_ = true;
-    opener_.reset();
+    opener_.close();
     if (made_) made_->close();
     made_ = nullptr;
     if (const OpenSessionPtr open = host_.open()) open->close();  // its loop may be handing over what is to be saved
-    files_.reset();
+    files_.close();
     drafts_.reset();
     job_forms_.reset();
     jobs_.reset();
@@ -92,7 +93,7 @@ void Start::describe(Role role, const Respond& respond) {
         respond(json_response(200, page));
         return;
     }
-    files_->post([this, respond, page]() mutable {
+    files_.post([this, respond, page]() mutable {
         page["folder"] = library_.folder().string();
         const UploadLimits& limits = settings_.uploads;
         page["uploads"] = {{"bytes", limits.bytes}, {"files", limits.files}, {"cells", limits.cells}};
@@ -127,7 +128,7 @@ void Start::open(const Request& request, const Respond& respond) {
             return respond(error_response(409, allowed.error().message));
         }
     }
-    files_->post([this, scene, session, ensemble, respond] {
+    files_.post([this, scene, session, ensemble, respond] {
         auto found = find(scene, session, ensemble);
         if (!found) return respond(error_response(404, found.error().message));
         begin(std::move(*found), respond);
@@ -179,7 +180,7 @@ void Start::begin(Wanted wanted, const Respond& respond) {
         stop_ = false;
     }
     respond(json_response(202, {{"done", "opening " + wanted.what}, {"created", nullptr}}));
-    opener_->post([this, wanted = std::move(wanted)] { work(wanted); });
+    opener_.post([this, wanted = std::move(wanted)] { work(wanted); });
 }
 
 bool Start::say(const std::string& what, double share) {
@@ -199,8 +200,8 @@ void Start::work(const Wanted& wanted) {
     try {
         auto loaded = load(wanted);
         if (!loaded) return end(loaded.error().message);
-        auto made = OpenSession::open(host_.thread, loaded->scene, loaded->options, std::move(loaded->scenarios),
-                                      std::move(loaded->overlays), loaded->tiles);
+        auto made = OpenSession::open(host_.thread, host_.executor, loaded->scene, loaded->options,
+                                      std::move(loaded->scenarios), std::move(loaded->overlays), loaded->tiles);
         if (!made) return end(made.error().message);
         if (stop_) {
             OpenSession::retire(host_.thread, std::move(*made));
@@ -231,7 +232,7 @@ void Start::put_in_place() {
     }
     if (!former) return;
     former->session.dismiss_all();
-    opener_->post([thread = host_.thread, former] { OpenSession::retire(thread, former); });
+    opener_.post([thread = host_.thread, former] { OpenSession::retire(thread, former); });
 }
 
 Result<Start::Loaded> Start::load(const Wanted& wanted) {
@@ -301,12 +302,12 @@ void Start::cancel(const Respond& respond) {
 }
 
 void Start::forget(const std::string& id, const Respond& respond) {
-    files_->post([this, id, respond] { respond(of(library_.forget(id), "taken out of the recent scenes")); });
+    files_.post([this, id, respond] { respond(of(library_.forget(id), "taken out of the recent scenes")); });
 }
 
 /// A file of a session may be long: it is read beside the server's thread.
 void Start::save(const Request& request, const Respond& respond) {
-    files_->post([this, body = request.body, respond] { save_wanted(body, respond); });
+    files_.post([this, body = request.body, respond] { save_wanted(body, respond); });
 }
 
 void Start::save_wanted(const std::string& body, const Respond& respond) {
@@ -335,7 +336,7 @@ void Start::save_open(const std::string& name, const Respond& respond) {
     if (!open) return respond(error_response(409, "no scene is open; there is nothing to save"));
     open->session.loop().post([this, name, respond, title = open->session.scene()->spec.scene.title,
                                laid = open->overlays.saved()](Scenarios& all) {
-        files_->post([this, name, respond, text = to_text(write_session(all, name, title, laid))] {
+        files_.post([this, name, respond, text = to_text(write_session(all, name, title, laid))] {
             keep(name, text, respond);
         });
     });
@@ -347,15 +348,15 @@ void Start::keep(const std::string& name, const std::string& session, const Resp
 }
 
 void Start::remove_saved(const std::string& id, const Respond& respond) {
-    files_->post([this, id, respond] { respond(of(library_.remove_session(id), "removed")); });
+    files_.post([this, id, respond] { respond(of(library_.remove_session(id), "removed")); });
 }
 
 void Start::remove_scene(const std::string& id, const Respond& respond) {
-    files_->post([this, id, respond] { respond(of(library_.remove_scene(id), "deleted")); });
+    files_.post([this, id, respond] { respond(of(library_.remove_scene(id), "deleted")); });
 }
 
 void Start::download(const std::string& id, const Respond& respond) {
-    files_->post([this, id, respond] {
+    files_.post([this, id, respond] {
         for (const KnownScene& known : library_.scenes()) {
             if (known.id != id) continue;
             return drafts_->pack(known.file, known.file.empty(), known.title, respond);
@@ -365,7 +366,7 @@ void Start::download(const std::string& id, const Respond& respond) {
 }
 
 void Start::with_scene(const std::string& id, const Respond& respond, std::function<void(const KnownScene&)> ask) {
-    files_->post([this, id, respond, ask = std::move(ask)] {
+    files_.post([this, id, respond, ask = std::move(ask)] {
         for (const KnownScene& known : library_.scenes()) {
             if (known.id == id) return ask(known);
         }

@@ -9,23 +9,24 @@
 #include <vector>
 
 #include "serve/drafts.hpp"
+#include "serve/executor.hpp"
 #include "serve/job_forms.hpp"
 #include "serve/jobs.hpp"
 #include "serve/library.hpp"
 #include "serve/open_session.hpp"
 #include "serve/server.hpp"
 #include "serve/session_file.hpp"
-#include "serve/worker.hpp"
 
 namespace talus::serve {
 
 /// The start page: what can be opened, and the opening of it, in place of the session that is open. Everything but
-/// close() is for the server's thread; loading and replaying happen on a thread of their own.
+/// close() is for the server's thread; loading and replaying happen on lanes.
 class Start {
   public:
-    /// What the server has for it; both for the server's thread.
+    /// What the server has for it; the functions are for the server's thread.
     struct Host {
         Thread thread;
+        Executor& executor;
         std::function<OpenSessionPtr()> open;      ///< the session that is open; none
         std::function<void(OpenSessionPtr)> take;  ///< this one is open from now on
     };
@@ -82,10 +83,10 @@ class Start {
     /// What one of the three names is.
     [[nodiscard]] Result<Wanted> find(const std::string& scene, const std::string& session,
                                       const std::string& ensemble) const;
-    /// On the thread of files: what save() is asked.
+    /// On the lane of files: what save() is asked.
     void save_wanted(const std::string& body, const Respond& respond);
     void save_open(const std::string& name, const Respond& respond);
-    /// On the thread of files: the text of a session.
+    /// On the lane of files: the text of a session.
     void keep(const std::string& name, const std::string& session, const Respond& respond) const;
     void begin(Wanted wanted, const Respond& respond);
     void work(const Wanted& wanted);
@@ -111,11 +112,12 @@ class Start {
     } state_;
     OpenSessionPtr made_;  // on its way to its place
     int folders_ = 0;      // of sessions, for their names; used by the opener only
-    std::unique_ptr<Worker> files_ = std::make_unique<Worker>("start");
+    bool closed_ = false;
+    Lane files_{host_.executor, "start"};
     std::unique_ptr<Drafts> drafts_;
     std::unique_ptr<Jobs> jobs_;
-    std::unique_ptr<JobForms> job_forms_ = std::make_unique<JobForms>();
-    std::unique_ptr<Worker> opener_ = std::make_unique<Worker>("opener");
+    std::unique_ptr<JobForms> job_forms_ = std::make_unique<JobForms>(host_.executor);
+    Lane opener_{host_.executor, "opener"};
 };
 
 }  // namespace talus::serve

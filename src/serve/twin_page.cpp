@@ -25,13 +25,16 @@ Result<std::string> make_page(OpenSession& open, const std::atomic<bool>& stop) 
 
 }  // namespace
 
+TwinPage::TwinPage(OpenSession& open)
+    : open_(open), writer_(open.session.executor(), "twin page", Priority::background) {}
+
 void TwinPage::close() {
     stop_ = true;
-    writer_.reset();
+    writer_.close();
 }
 
 void TwinPage::file(const Respond& respond) {
-    writer_->post([this, respond] {
+    writer_.post([this, respond] {
         try {
             auto html = make_page(open_, stop_);
             if (stop_) return;

@@ -106,7 +106,9 @@ bool session_file(const std::string& bytes) {
 
 bool draft_setup(const std::string& bytes) {
     struct Page {
-        serve::Drafts drafts{place().folder(), {10'000'000, 20, 1e5}, place().folder(), test::foreign_reader()};
+        serve::Executor executor;
+        serve::Drafts drafts{
+            executor, place().folder(), {10'000'000, 20, 1e5}, place().folder(), test::foreign_reader()};
         std::string id;
 
         serve::Response ask(const std::function<void(const serve::Respond&)>& question) const {

@@ -204,7 +204,8 @@ TEST_F(QueuesTest, a_receiver_waits_for_no_other_and_its_queue_keeps_the_oldest)
         }
         return sentences;
     };
-    serve::AlarmSender sender(sender_to(receiver.port()), link->get());
+    serve::Executor executor;
+    serve::AlarmSender sender(executor, sender_to(receiver.port()), link->get());
     ASSERT_EQ(sender.receivers().size(), 2U);
     const auto send = [&](int k) {
         sender.send(json{{"alarm", k}}.dump(), [&](const serve::AlarmSender::Outcome& outcome) {
