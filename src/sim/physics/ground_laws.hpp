@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include "core/number.hpp"
-#include "params/spec.hpp"
+#include "params/material_spec.hpp"
 #include "sim/physics/samosat.hpp"
 
 /// Resistance of the ground by the speed and thickness of the flow. Both models, the relaxation of releases and the
