@@ -261,7 +261,7 @@ TALUS_DEVICE Real drag_loss(const Real& linear, const Real& square) {
 ///   the whole column; applied to the lowest layer alone, debris would shear off above it wherever internal friction
 ///   is less than the slope. Debris more than a spacing above the flow's thickness is airborne and not affected. xi may
 ///   depend on the thickness (see turbulence_at).
-/// - Drag by the thickness, such as samosAT's: Voellmy's with the xi of the thickness (see wall_drag).
+/// - A law in place of xi: Voellmy's with the xi of the thickness (see wall_drag).
 /// - Laminar flow over ground that holds it: the stress 3 rho nu v / h below a parabolic profile (Nusselt 1916, "Die
 ///   Oberflaechenkondensation des Wasserdampfes"), distributed in the same way, as 3 nu v / h^2. It is the viscous
 ///   term K eta v / (8 rho h^2) of the quadratic rheology (O'Brien, Julien & Fullerton 1993, "Two-dimensional water
