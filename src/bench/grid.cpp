@@ -31,7 +31,7 @@ depth::Solver make_valley() {
     }
     depth::Material material;
     material.friction_coefficient = 0.1;
-    material.turbulent_friction = 500;
+    material.laws.turbulent_friction = 500;
     depth::Solver solver(bed, material);
     solver.add(debris);
     return solver;

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "core/number.hpp"
-#include "sim/physics/samosat.hpp"
+#include "sim/physics/ground_laws.hpp"
 
 /// The formulas of the depth-averaged model, on one number or on many lanes; docs/depth-averaged.md has the equations.
 namespace talus::depth {
@@ -194,7 +194,7 @@ struct Resistance {
     Real inverse_turbulence;  ///< 1 / xi at the depth of the flow, s2/m
     Real stem_drag;           ///< deceleration over v^2, 1/m
     Real viscosity;           ///< kinematic, on the ground, m2/s
-    Real fluidization{};      ///< R_s0 of samosAT; 0: friction is the same at every speed
+    sim::MovingFriction<Real> moving_friction{};
 };
 
 /// What a plug adds to the stress on the ground, over the yield stress. A sheet that shears below a plug (Bingham 1922)
@@ -230,9 +230,9 @@ TALUS_INLINE Real left_by(const Real& friction_left, const Real& laminar, const 
 
 /// Momentum along the ground (depth times speed, m2/s) after a step of resistance, implicitly: Coulomb and cohesion,
 /// which stop, with the plug of cohesive viscous debris; laminar drag 3 nu U / h on the ground below a parabolic
-/// profile; Voellmy's (1955) rho g U^2 / xi and stems (see sim/physics/resistance.hpp); samosAT (see
-/// sim/physics/samosat.hpp). `stretch`: area of the ground over its plan area; `normal_force`: normal stress over
-/// density, m2/s2.
+/// profile; Voellmy's (1955) rho g U^2 / xi and stems (see sim/physics/resistance.hpp), and what stands in for them
+/// (see sim/physics/ground_laws.hpp). `stretch`: area of the ground over its plan area; `normal_force`: normal stress
+/// over density, m2/s2.
 template <class Real>
 TALUS_INLINE Real resisted(const Resistance<Real>& r, const Real& gravity, const Real& momentum, const Real& depth,
                            const Real& normal_force, const Real& stretch, const Real& time_step) {
@@ -248,15 +248,15 @@ TALUS_INLINE Real resisted(const Resistance<Real>& r, const Real& gravity, const
     const Real square =
         time_step * inverse_depth * (gravity * stretch * r.inverse_turbulence * inverse_depth + r.stem_drag);
     const Real area = time_step * stretch;
-    if (!any(r.fluidization > Real(0))) {
+    if (!any(r.moving_friction.on())) {
         return left_by(momentum - area * (r.friction * normal_force + strength), laminar, square);
     }
-    // Friction that falls with the speed (samosAT), from rest upwards, so that debris stops where it can.
-    Real friction = Real(2) * r.friction, left = Real(0);
+    // Friction that falls with the speed, from rest upwards, so that debris stops where it can.
+    Real friction = r.moving_friction.at_rest(r.friction), left = Real(0);
     for (int k = 0; k < 5; ++k) {
         left = left_by(momentum - area * (friction * normal_force + strength), laminar, square);
         const Real speed = left * inverse_depth;
-        friction = r.friction * (Real(1) + sim::slow_share(r.fluidization, normal_force, speed * speed));
+        friction = r.moving_friction.at(r.friction, normal_force, speed * speed);
     }
     return left;
 }
@@ -294,8 +294,8 @@ TALUS_INLINE RestBalance<Real> rest_balance(const RestSlope<Real>& x, const Rest
     const Real square = select(x.extreme + y.extreme > Real(0), larger(in_x, in_y),
                                x.slope * x.slope + y.slope * y.slope + along * along);
     const Real normal = gravity * depth;
-    const Real at_rest = select(r.fluidization > Real(0), Real(2) * r.friction, r.friction);
-    const Real strength = at_rest * normal + r.strength * (Real(1) + larger(Real(0), along));
+    const Real strength =
+        r.moving_friction.at_rest(r.friction) * normal + r.strength * (Real(1) + larger(Real(0), along));
     return {square * normal * normal, strength * strength * square_stretch};
 }
 

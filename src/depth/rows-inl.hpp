@@ -14,7 +14,6 @@
 #include "depth/formulas.hpp"
 #include "depth/soil.hpp"
 #include "depth/stages.hpp"
-#include "sim/physics/resistance.hpp"
 #include "simd/lanes.hpp"
 
 HWY_BEFORE_NAMESPACE();
@@ -110,15 +109,15 @@ HWY_INLINE Resistance<L> resistance_at(const StageData& data, std::ptrdiff_t i, 
                                                      : friction_of_soil(data, dry_friction, depth, stretch, water);
     r.strength = known(data.cover.strength, data.strength);
     r.inverse_turbulence = known(data.cover.inverse_turbulence, data.inverse_turbulence);
-    if (data.turbulent_thickness > 0) {
+    if (data.laws.turbulent_thickness > 0) {
         const L thickness = larger(depth, L(dry_depth)) / stretch;
-        r.inverse_turbulence = r.inverse_turbulence * sim::rough_cube_root(L(data.turbulent_thickness) / thickness);
+        r.inverse_turbulence = r.inverse_turbulence * sim::turbulence_at(data.laws, thickness);
     }
-    if (data.samosat.on) {
+    if (data.laws.have_wall_drag()) {
         const L thickness = larger(depth, L(dry_depth)) / stretch;
-        r.inverse_turbulence = sim::wall_drag(data.samosat, thickness) / L(data.gravity);
+        r.inverse_turbulence = sim::wall_drag(data.laws, thickness) / L(data.gravity);
     }
-    r.fluidization = L(data.samosat.fluidization);
+    r.moving_friction = data.laws.moving_friction<L>();
     r.stem_drag = known(data.cover.stem_drag, 0);
     r.viscosity = known(data.cover.viscosity, data.viscosity);
     return r;

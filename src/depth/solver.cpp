@@ -230,11 +230,10 @@ double Solver::advance_stage(bool second) {
     data.gravity = static_cast<float>(material_.gravity);
     data.friction = static_cast<float>(material_.friction_coefficient);
     data.strength = static_cast<float>(material_.cohesion / material_.rest_density);
-    data.inverse_turbulence =
-        material_.turbulent_friction > 0 ? static_cast<float>(1 / material_.turbulent_friction) : 0;
-    data.turbulent_thickness = static_cast<float>(material_.turbulent_thickness);
-    data.viscosity = static_cast<float>(material_.viscosity);
-    data.samosat = material_.samosat;
+    const double xi = material_.laws.turbulent_friction;
+    data.inverse_turbulence = xi > 0 ? static_cast<float>(1 / xi) : 0;
+    data.viscosity = static_cast<float>(material_.laws.laminar_viscosity);
+    data.laws = material_.laws;
     data.effective_share = static_cast<float>(1 - material_.pore_pressure_ratio);
     const double decay = material_.pore_pressure_decay_time;
     const double halfway = pore_pressure_left_ * (decay > 0 ? std::exp(-time_step_ / (2 * decay)) : 1);

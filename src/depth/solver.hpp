@@ -19,13 +19,10 @@ namespace talus::depth {
 
 /// Resistance of the ground and of the debris inside, everywhere the same.
 struct Material {
-    double rest_density = 2000;           ///< kg/m3
-    double friction_coefficient = 0;      ///< Coulomb's
-    double turbulent_friction = 0;        ///< xi, m/s2; 0: none
-    double turbulent_thickness = 0;       ///< m, normal to the ground, of flow with that xi; 0: of any
-    double cohesion = 0;                  ///< Pa
-    double viscosity = 0;                 ///< kinematic, m2/s, of laminar flow over ground that holds it; 0: none
-    sim::Samosat samosat;                 ///< in place of `turbulent_friction`
+    double rest_density = 2000;       ///< kg/m3
+    double friction_coefficient = 0;  ///< Coulomb's
+    double cohesion = 0;              ///< Pa
+    sim::GroundLaws laws;
     double pore_pressure_ratio = 0;       ///< r_u, when debris starts to move or comes in
     double pore_pressure_decay_time = 0;  ///< s; 0: constant
     sim::EvolvingPressure soil;           ///< with which pore pressure evolves; then a ratio of 0 is hydrostatic

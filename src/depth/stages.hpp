@@ -4,8 +4,8 @@
 #include <cstdint>
 #include <string_view>
 
+#include "sim/physics/ground_laws.hpp"
 #include "sim/physics/pore_pressure.hpp"
-#include "sim/physics/samosat.hpp"
 
 namespace talus::depth {
 
@@ -50,8 +50,8 @@ struct StageData {
     Motion from{}, to{};
     bool second = false;
     float time_step = 0, inverse_cell = 0, gravity = 0;
-    float friction = 0, strength = 0, inverse_turbulence = 0, turbulent_thickness = 0, viscosity = 0;
-    sim::Samosat samosat{};         ///< in place of `inverse_turbulence`
+    float friction = 0, strength = 0, inverse_turbulence = 0, viscosity = 0;
+    sim::GroundLaws laws{};
     float effective_share = 1;      ///< of the normal stress, borne by the grains, where pore pressure is not carried
     float pore_pressure_left = 1;   ///< r_u over what Motion has, in the middle of the step
     float fresh_pore_pressure = 0;  ///< of what comes in

@@ -239,24 +239,21 @@ void MapAccumulator::follow(const sim::Model& model, const sim::State& state) {
 void MapAccumulator::keep_pressures() {
     if (!scale_.keeps_pressures) {
         for (const auto& tile : tiles_) {
-            for (std::size_t cell = 0; cell < tile_cells; ++cell)
-                tile->peak_pressure[cell] = peak_pressure(*tile, cell);
+            for (std::size_t cell = 0; cell < tile_cells; ++cell) tile->pressure[cell] = peak_pressure(*tile, cell);
         }
     }
     scale_.keeps_pressures = true;
 }
 
 float MapAccumulator::peak_pressure(const Tile& tile, std::size_t cell) const {
-    if (scale_.keeps_pressures) return tile.peak_pressure[cell];
-    const double speed = tile.peak_speed[cell];
+    if (scale_.keeps_pressures) return tile.pressure[cell];
+    const double speed = tile.speed[cell];
     return static_cast<float>(scale_.rest_density * speed * speed);
 }
 
 void MapAccumulator::update_peaks(Tile& tile, double time) const {
     for (std::size_t cell = 0; cell < tile_cells; ++cell) {
-        update_cell(scale_, tile.sums[cell].sum(), density_in(tile, cell), time,
-                    {tile.peak_depth[cell], tile.peak_speed[cell], tile.arrival_time[cell], tile.arrival_speed[cell],
-                     tile.peak_pressure[cell]});
+        update_cell(scale_, tile.sums[cell].sum(), density_in(tile, cell), time, map_cell(tile, cell));
     }
 }
 

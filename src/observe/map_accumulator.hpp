@@ -94,16 +94,11 @@ class MapAccumulator {
         [[nodiscard]] double volume() const { return pair[0]; }  // 2^-24 of a particle
         [[nodiscard]] MapSum sum() const { return {pair[0], pair[1]}; }
     };
-    struct TileValues {
+    struct TileValues : MapArrays<std::array<float, tile_cells>> {
         int column = 0, row = 0;  // of its first cell
         std::uint64_t added = 0;  // the add to which the sums belong
         std::array<CellSum, tile_cells> sums{};
-        std::array<float, tile_cells> peak_depth{};     // 0: not reached
-        std::array<float, tile_cells> peak_speed{};     // depth-averaged
-        std::array<float, tile_cells> arrival_time{};   // NaN: never
-        std::array<float, tile_cells> arrival_speed{};  // depth-averaged
-        std::array<float, tile_cells> peak_pressure{};  // Pa; only where the density has changed
-        std::vector<float> density;                     // mean, kg/m3, by cell; empty: the rest density
+        std::vector<float> density;  // mean, kg/m3, by cell; empty: the rest density
     };
     struct Tile : TileValues {
         tbb::spin_mutex adding;
@@ -186,8 +181,9 @@ void MapAccumulator::keep(Archive& archive) {
             if (!on_map || archive.failed()) return archive.fail();
         }
         Tile& tile = tile_at(column, row);
-        archive(tile.added, tile.sums, tile.peak_depth, tile.peak_speed, tile.arrival_time, tile.arrival_speed,
-                tile.peak_pressure, tile.density);
+        archive(tile.added, tile.sums);
+        for_each_map_array([&](auto& array) { archive(array); }, tile);
+        archive(tile.density);
         if constexpr (Archive::reading) {
             if (tile.added != adds_) continue;
             active_.resize(std::max<std::size_t>(active_.size(), active_count_ + 1));

@@ -15,11 +15,8 @@ void MapAccumulator::send_tiles() {
         tiles.position[t] = static_cast<std::uint32_t>((tile.row + 1) / static_cast<int>(tile_size)) * tile_columns_ +
                             static_cast<std::uint32_t>((tile.column + 1) / static_cast<int>(tile_size));
         const auto at = static_cast<std::ptrdiff_t>(t * tile_cells);
-        std::copy(tile.peak_depth.begin(), tile.peak_depth.end(), tiles.depth.begin() + at);
-        std::copy(tile.peak_speed.begin(), tile.peak_speed.end(), tiles.speed.begin() + at);
-        std::copy(tile.arrival_time.begin(), tile.arrival_time.end(), tiles.arrival_time.begin() + at);
-        std::copy(tile.arrival_speed.begin(), tile.arrival_speed.end(), tiles.arrival_speed.begin() + at);
-        std::copy(tile.peak_pressure.begin(), tile.peak_pressure.end(), tiles.pressure.begin() + at);
+        for_each_map_array([&](const auto& from, auto& to) { std::copy(from.begin(), from.end(), to.begin() + at); },
+                           tile, tiles);
         std::fill_n(tiles.density.begin() + at, tile_cells, static_cast<float>(scale_.rest_density));
         std::copy(tile.density.begin(), tile.density.end(), tiles.density.begin() + at);
     }
@@ -62,11 +59,8 @@ void MapAccumulator::read_back() const {
             const MapSum sum = tiles.sum[t * tile_cells + cell].sum();
             tile.sums[cell].pair = CellSum::Pair{sum.volume, sum.weighted};
         }
-        std::copy_n(tiles.depth.begin() + at, tile_cells, tile.peak_depth.begin());
-        std::copy_n(tiles.speed.begin() + at, tile_cells, tile.peak_speed.begin());
-        std::copy_n(tiles.arrival_time.begin() + at, tile_cells, tile.arrival_time.begin());
-        std::copy_n(tiles.arrival_speed.begin() + at, tile_cells, tile.arrival_speed.begin());
-        std::copy_n(tiles.pressure.begin() + at, tile_cells, tile.peak_pressure.begin());
+        for_each_map_array([&](const auto& from, auto& to) { std::copy_n(from.begin() + at, tile_cells, to.begin()); },
+                           tiles, tile);
         if (device_->own_densities()) {
             tile.density.assign(tiles.density.begin() + at, tiles.density.begin() + at + tile_cells);
         }

@@ -78,7 +78,7 @@ Extent MapAccumulator::reached_cells() const {
     Extent reached{none, none, -none, -none};
     for (const auto& tile : tiles_) {
         for (std::size_t cell = 0; cell < tile_cells; ++cell) {
-            if (tile->peak_depth[cell] == 0) continue;
+            if (tile->depth[cell] == 0) continue;
             reached.include(geometry_.centre(tile->column + column_of(cell), tile->row + row_of(cell)));
         }
     }
@@ -106,11 +106,11 @@ HazardMaps MapAccumulator::maps() const {
     HazardMaps maps{empty, empty, empty, empty, empty, empty};
     for (const auto& tile : tiles_) {
         for (std::size_t cell = 0; cell < tile_cells; ++cell) {
-            if (tile->peak_depth[cell] == 0) continue;
+            if (tile->depth[cell] == 0) continue;
             const std::size_t k =
                 g.index(tile->column + column_of(cell) - first_column, tile->row + row_of(cell) - first_row);
-            maps.peak_depth.values[k] = tile->peak_depth[cell];
-            maps.peak_speed.values[k] = tile->peak_speed[cell];
+            maps.peak_depth.values[k] = tile->depth[cell];
+            maps.peak_speed.values[k] = tile->speed[cell];
             maps.peak_pressure.values[k] = peak_pressure(*tile, cell);
             maps.arrival_time.values[k] = tile->arrival_time[cell];
             if (!std::isnan(tile->arrival_time[cell])) maps.arrival_speed.values[k] = tile->arrival_speed[cell];

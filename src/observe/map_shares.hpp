@@ -1,7 +1,9 @@
 #pragma once
 
 #include <cmath>
+#include <cstddef>
 #include <cstdint>
+#include <limits>
 
 #include "core/geometry.hpp"
 #include "core/number.hpp"
@@ -82,12 +84,36 @@ struct MapSum {
     }
 };
 
-/// What a map keeps of a cell.
-struct MapCell {
-    float &depth, &speed;                 ///< peaks; depth 0: not reached
-    float &arrival_time, &arrival_speed;  ///< NaN: never
-    float& pressure;                      ///< peak; only where it is kept
+/// What a map keeps by cell, in one array each.
+template <class Array>
+struct MapArrays {
+    Array depth{}, speed{};                 ///< peaks, of the depth-averaged speed; depth 0: not reached
+    Array arrival_time{}, arrival_speed{};  ///< NaN: never; depth-averaged
+    Array pressure{};                       ///< peak, Pa; only where the density has changed
 };
+using MapCell = MapArrays<float&>;
+
+template <class Make>
+[[nodiscard]] auto made_map_arrays(const Make& make) {
+    return MapArrays<decltype(make())>{make(), make(), make(), make(), make()};
+}
+/// f(array, the same of the others...) for every array.
+template <class F, class... Arrays>
+void for_each_map_array(const F& f, Arrays&... all) {
+    f(all.depth...);
+    f(all.speed...);
+    f(all.arrival_time...);
+    f(all.arrival_speed...);
+    f(all.pressure...);
+}
+template <class Arrays>
+[[nodiscard]] TALUS_DEVICE MapCell map_cell(Arrays& arrays, std::size_t k) {
+    return {arrays.depth[k], arrays.speed[k], arrays.arrival_time[k], arrays.arrival_speed[k], arrays.pressure[k]};
+}
+TALUS_DEVICE inline void clear_cell(const MapCell& cell) {
+    cell.depth = cell.speed = cell.arrival_speed = cell.pressure = 0;
+    cell.arrival_time = std::numeric_limits<float>::quiet_NaN();
+}
 
 /// Peaks and arrival after a step at `time`.
 TALUS_DEVICE inline void update_cell(const MapScale& scale, const MapSum& sum, double density, double time,

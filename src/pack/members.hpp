@@ -1,12 +1,15 @@
 #pragma once
 
+#include <cstdint>
+
 #include "pack/codec.hpp"
 #include "scene/scene.hpp"
 
-/// The members of what a scene is made of. Names are the keys of a packed scene: a change needs another version
-/// (pack.cpp).
-
+/// The members of what a scene is made of. Names are the keys of a packed scene.
 namespace talus::pack {
+
+/// Changes with every change of these lists and of those in pack.cpp.
+inline constexpr std::uint32_t version = 3;
 
 TALUS_PACKED(Extent, x_min, y_min, x_max, y_max)
 TALUS_PACKED(PlanPoint, x, y)

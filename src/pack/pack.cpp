@@ -21,8 +21,6 @@
 namespace talus::pack {
 namespace {
 
-/// Changes with every change of what is inside (members.hpp).
-constexpr std::uint32_t version = 3;
 constexpr std::string_view mark = "TALUSPAK";
 constexpr std::size_t header_size = mark.size() + sizeof version + sizeof(std::uint64_t);
 constexpr std::size_t hash_size = sizeof(std::uint64_t);

@@ -175,6 +175,11 @@ class Declaration {
         });
     }
 
+    /// All keys so far.
+    void for_particles_only() {
+        for (Parameter& parameter : section_.parameters) parameter.for_particles_only();
+    }
+
     [[nodiscard]] Section take() { return std::move(section_); }
 
   private:

@@ -116,47 +116,63 @@ Section declare_solver() {
     s.optional_key("particle_spacing_m", "m", &SolverSpec::particle_spacing, between(1e-4, 100),
                    "from target_layers or target_particle_count",
                    "Edge of the cube of debris that a particle stands for.")
-        .also_called({"particle_size", "particle_diameter", "resolution"});
+        .also_called({"particle_size", "particle_diameter", "resolution"})
+        .for_particles_only();
     s.optional_key("target_layers", "", &SolverSpec::target_layers, between(1, 1000), "from target_particle_count",
                    "Particles over the mean thickness of the thinnest release, normal to the slope; an inflow across a "
-                   "line counts with the mean thickness at which it enters.");
+                   "line counts with the mean thickness at which it enters.")
+        .for_particles_only();
     s.optional_key("target_particle_count", "", &SolverSpec::target_particle_count, between(1, 1e8),
                    fmt::format("{}, unless one of the two keys above is given", SolverSpec::usual_particle_count),
                    "Particles of the volume of all releases and inflows.")
-        .also_called({"particles", "number_of_particles", "particle_count"});
+        .also_called({"particles", "number_of_particles", "particle_count"})
+        .for_particles_only();
     s.at_most_one_of({"particle_spacing_m", "target_layers", "target_particle_count"});
     s.key("particle_limit", "", &SolverSpec::particle_limit, between(1, 1e8),
-          "More particles than this are refused before the run.");
+          "More particles than this are refused before the run.")
+        .for_particles_only();
     s.optional_key("time_step_s", "s", &SolverSpec::time_step, between(1e-5, 1),
                    "adaptive: a particle moves at most displacement_limit of a spacing per step", "Fixed time step.")
-        .also_called({"dt"});
+        .also_called({"dt"})
+        .for_particles_only();
     s.key("displacement_limit", "", &SolverSpec::displacement_limit, between(0.001, 1),
-          "Share of a spacing that a particle moves at most in an adaptive time step.");
+          "Share of a spacing that a particle moves at most in an adaptive time step.")
+        .for_particles_only();
     s.optional_key("largest_time_step_s", "s", &SolverSpec::largest_time_step, between(1e-5, 1),
                    "sqrt(particle spacing / g) / 6, at least 1/60 and at most 1/30 s",
-                   "Upper bound of the adaptive time step. Fast, overcompressed and very viscous debris shortens it.");
+                   "Upper bound of the adaptive time step. Fast, overcompressed and very viscous debris shortens it.")
+        .for_particles_only();
     s.key("smallest_time_step_s", "s", &SolverSpec::smallest_time_step, between(1e-5, 1),
-          "An adaptive time step below this stops the run as a fault.");
-    s.key("iteration_count", "", &SolverSpec::iteration_count, between(1, 1000), "Solver iterations per time step.");
+          "An adaptive time step below this stops the run as a fault.")
+        .for_particles_only();
+    s.key("iteration_count", "", &SolverSpec::iteration_count, between(1, 1000), "Solver iterations per time step.")
+        .for_particles_only();
     s.key("extra_iteration_count", "", &SolverSpec::extra_iteration_count, between(0, 1000),
           "Iterations that a step may take besides while debris is overcompressed: past half of the limits of "
-          "compression.");
+          "compression.")
+        .for_particles_only();
     s.choice("kernel", &SolverSpec::kernel, {"wendland_c2", "cubic_spline", "spiky", "poly6_spiky"},
              "Smoothing kernel; poly6_spiky is the pair of Macklin & Mueller (2013): Poly6 for the density, Spiky for "
-             "its gradient.");
+             "its gradient.")
+        .for_particles_only();
     s.choice(
-        "internal_friction", &SolverSpec::internal_friction, {"stress", "pair"},
-        "How debris rubs on debris: stress keeps a shear stress per particle between steps, so that a deposit stands; "
-        "pair is a correction per pair of particles (Macklin et al. 2014), which creeps.");
+         "internal_friction", &SolverSpec::internal_friction, {"stress", "pair"},
+         "How debris rubs on debris: stress keeps a shear stress per particle between steps, so that a deposit stands; "
+         "pair is a correction per pair of particles (Macklin et al. 2014), which creeps.")
+        .for_particles_only();
     s.key("support_ratio", "", &SolverSpec::support_ratio, between(1.5, 4),
-          "Support radius of the kernel over the particle spacing.");
+          "Support radius of the kernel over the particle spacing.")
+        .for_particles_only();
     s.key(
-        "under_relaxation", "", &SolverSpec::under_relaxation, between(0.001, 2),
-        "Factor on every correction of the Jacobi iteration, relative to its largest eigenvalue: above 2 it diverges.");
+         "under_relaxation", "", &SolverSpec::under_relaxation, between(0.001, 2),
+         "Factor on every correction of the Jacobi iteration, relative to its largest eigenvalue: above 2 it diverges.")
+        .for_particles_only();
     s.key("constraint_relaxation", "", &SolverSpec::constraint_relaxation, between(0, 1000),
-          "Softens the density constraint: term in the multiplier's denominator relative to its rest value.");
+          "Softens the density constraint: term in the multiplier's denominator relative to its rest value.")
+        .for_particles_only();
     s.key("depenetration_speed_mps", "m/s", &SolverSpec::depenetration_speed, between(1e-6, 1000),
-          "With internal_friction = \"pair\": the fastest that compression at the start of a step is undone.");
+          "With internal_friction = \"pair\": the fastest that compression at the start of a step is undone.")
+        .for_particles_only();
     s.key("end_time_s", "s", &SolverSpec::end_time, above_to(0, 1e7),
           "Simulated time at which the run ends at the latest.")
         .also_called({"t_end", "end_time", "duration", "simulation_time"});
@@ -173,19 +189,21 @@ Section declare_solver() {
         .also_called({"stop_momentum", "stop_criterion"});
     s.key("stop_duration_s", "s", &SolverSpec::stop_duration, between(0, 1e7),
           "Duration for which stop_moving_share, stop_energy_share or stop_momentum_share must hold.");
-    s.key(
-        "rest_duration_s", "s", &SolverSpec::rest_duration, between(0, 1e7),
-        "Debris that has hardly moved (a hundredth of a particle's free-fall speed) for so long is at rest: it presses "
-        "as before and costs little until something moves next to it. 0: nothing sleeps.");
+    s.key("rest_duration_s", "s", &SolverSpec::rest_duration, between(0, 1e7),
+          "Debris that has hardly moved (a hundredth of a particle's free-fall speed) for so long is at rest: it "
+          "presses as before and costs little until something moves next to it. 0: nothing sleeps.")
+        .for_particles_only();
     s.key("compression_limit", "", &SolverSpec::compression_limit, above_to(0, 10),
-          "Mean over-density (density over rest density, less 1) above which the run stops as a fault.");
+          "Mean over-density (density over rest density, less 1) above which the run stops as a fault.")
+        .for_particles_only();
     s.key("thread_count", "", &SolverSpec::thread_count, between(0, 512),
           "Threads to compute with; 0 takes all cores. Results do not depend on it.")
         .also_called({"threads", "nCPU", "n_cpu"});
     s.choice("backend", &SolverSpec::backend, {"cpu", "auto", "cuda", "host"},
              "What moves the particles: the processor (cpu), a graphics card of NVIDIA (cuda), or the card where there "
              "is one and the particles are many (auto). host computes what the card would on the processor, slowly, to "
-             "test it. Results agree as docs/gpu.md says, not bit for bit.");
+             "test it. Results agree as docs/gpu.md says, not bit for bit.")
+        .for_particles_only();
     s.choice(
         "model", &SolverSpec::model, {"particles", "depth_averaged"},
         "particles: in three dimensions. depth_averaged: depth and velocity per cell of a grid, in seconds, without "
@@ -193,10 +211,12 @@ Section declare_solver() {
     s.optional_key("grid_cell_m", "m", &SolverSpec::grid_cell, between(1e-3, 1000),
                    "the terrain's cell, or the largest whole fraction of it up to 2.5 m",
                    "Cell of the depth-averaged model.")
-        .also_called({"mesh_cell_size", "cell_size", "grid_resolution"});
+        .also_called({"mesh_cell_size", "cell_size", "grid_resolution"})
+        .for_depth_averaged_only();
     s.key("flight", "", &SolverSpec::flight, anything(),
           "true: debris of the depth-averaged model leaves the ground where that would have to hold it, flies without "
-          "friction, and loses the velocity normal to the ground where it lands. false: it follows the ground.");
+          "friction, and loses the velocity normal to the ground where it lands. false: it follows the ground.")
+        .for_depth_averaged_only();
     s.rule([](const SolverSpec& solver, const SceneSpec&, double spacing) -> std::optional<Violation> {
         const double small = solver.smallest_time_step, large = largest_time_step(solver, spacing);
         if (small <= large) return {};
@@ -213,7 +233,8 @@ Section declare_outputs() {
     Declaration<OutputSpec> s("outputs", "What is written.", &SceneSpec::outputs);
     s.optional_key("map_cell_m", "m", &OutputSpec::map_cell, between(1e-4, 1000),
                    "a whole fraction or multiple of the terrain's cell near 2.5 particle spacings",
-                   "Cell of the hazard maps.");
+                   "Cell of the hazard maps.")
+        .for_particles_only();
     s.key("sample_interval_s", "s", &OutputSpec::sample_interval, between(0.001, 1e7),
           "Simulated time between rows of timeseries.csv.");
     s.key("chainage_interval_m", "m", &OutputSpec::chainage_interval, between(0.001, 1000),
@@ -253,7 +274,8 @@ Section declare_outputs() {
           fmt::format("Contours that are also written, of each map \"map=value,value\", in the unit of its file: {}.",
                       fmt::join(contour_maps, ", ")));
     s.key("tracks", "", &OutputSpec::tracks, between(0, 1e6),
-          "Particles whose ways are also written, evenly chosen, at outputs.series_interval_s; 0: none.");
+          "Particles whose ways are also written, evenly chosen, at outputs.series_interval_s; 0: none.")
+        .for_particles_only();
     s.rule([](const OutputSpec& outputs, const SceneSpec&, double) -> std::optional<Violation> {
         if (const auto contours = contours_of(outputs.contours); !contours) {
             return Violation{"contours", ": " + contours.error().message};

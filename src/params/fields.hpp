@@ -52,6 +52,14 @@ struct Need {
     bool even_at_0 = false;  ///< also needed by a value of 0
 };
 
+/// What the two models make of a key.
+enum class KeyUse {
+    both,            ///< it changes what both compute, measure or say, or means nothing to a run
+    particles,       ///< given for the depth-averaged model, it is named in a note
+    depth_averaged,  ///< given for particles alone, it is named in a note
+    refused,         ///< the depth-averaged model refuses a scene that gives it
+};
+
 /// One key of a scene file. Simple relations to other keys are declared here, and the page shows them next to the
 /// field; all others are a Rule.
 struct Parameter {
@@ -71,6 +79,8 @@ struct Parameter {
     std::string below;         ///< key of the same section that it must be below, where given
     std::optional<Need> need;
     std::vector<std::string> synonyms;  ///< what other programs and papers call it: "xi"
+    KeyUse use = KeyUse::both;
+    std::string lacking;  ///< why the depth-averaged model refuses it: "has no nets"
 
     Parameter& also_called(std::vector<std::string> names) {
         synonyms = std::move(names);
@@ -91,6 +101,20 @@ struct Parameter {
     }
     Parameter& needs(Need what) {
         need = std::move(what);
+        return *this;
+    }
+
+    Parameter& for_particles_only() {
+        use = KeyUse::particles;
+        return *this;
+    }
+    Parameter& for_depth_averaged_only() {
+        use = KeyUse::depth_averaged;
+        return *this;
+    }
+    Parameter& refused_by_depth_averaged(std::string why) {
+        use = KeyUse::refused;
+        lacking = std::move(why);
         return *this;
     }
 

@@ -121,11 +121,14 @@ void declare_resistance(Declaration<MaterialSpec>& s) {
                    "friction does not depend on the shear rate",
                    "Limiting friction at high shear rate (mu_2 of the mu(I) law); at low shear rate it is "
                    "internal_friction_coefficient.")
-        .needs(stress(true));
+        .needs(stress(true))
+        .for_particles_only();
     s.key("inertial_number", "", &MaterialSpec::inertial_number, between(1e-6, 1000),
-          "Inertial number I_0 at which internal friction lies half way to inertial_friction_coefficient.");
+          "Inertial number I_0 at which internal friction lies half way to inertial_friction_coefficient.")
+        .for_particles_only();
     s.key("grain_diameter_m", "m", &MaterialSpec::grain_diameter, between(1e-6, 100),
-          "Grain diameter in the inertial number.");
+          "Grain diameter in the inertial number.")
+        .for_particles_only();
     s.key("grain_density_kgpm3", "kg/m3", &MaterialSpec::grain_density, between(1, 30000),
           "Density of the grains in the inertial number.");
 }
@@ -194,18 +197,21 @@ Section declare_material() {
     s.optional_key("building_friction_coefficient", "", &MaterialSpec::building_friction_coefficient, between(0, 10),
                    "equal to friction_coefficient", "Coulomb friction on the walls and roofs of buildings.")
         .assumes("Coulomb friction on walls and roofs")
-        .live_as();
+        .live_as()
+        .for_particles_only();
     s.optional_key("internal_friction_coefficient", "", &MaterialSpec::internal_friction_coefficient, between(0, 10),
                    "equal to friction_coefficient, with samosat twice that", "Coulomb friction of debris on debris.")
         .assumes("Internal friction")
         .live_as()
-        .also_called({"internal_friction", "tan_phi_internal"});
+        .also_called({"internal_friction", "tan_phi_internal"})
+        .for_particles_only();
     s.key("viscosity", "", &MaterialSpec::viscosity, from_to_below(0, 1),
           "Share of the velocity difference to its neighbours that debris loses per 1/60 s, at any time step. The "
           "same share is another material at another particle spacing; kinematic_viscosity_m2ps is not.")
         .assumes("Viscosity, as smoothing per 1/60 s")
         .live_as()
-        .also_called({"mu", "artificial_viscosity"});
+        .also_called({"mu", "artificial_viscosity"})
+        .for_particles_only();
     s.optional_key("kinematic_viscosity_m2ps", "m2/s", &MaterialSpec::kinematic_viscosity, between(0, 1e6),
                    "what viscosity amounts to at this particle spacing",
                    "Viscosity of the debris, in place of viscosity.");

@@ -56,7 +56,8 @@ Section declare_release() {
          "pore_pressure_hydrograph", &ReleaseSpec::pore_pressure_hydrograph, "no water rises",
          "CSV with the columns time_s and pore_pressure_ratio, of water that rises in this body until it fails; linear "
          "between rows, as in the first before it and in the last after it.")
-        .needs(stress());
+        .needs(stress())
+        .refused_by_depth_averaged("has no debris that waits for water to rise");
     s.optional_key("solid_fraction", "", &ReleaseSpec::solid_fraction, between(0.4, 0.75), "that of the material",
                    "Share of this body's volume that grains fill when it starts, with material.pore_pressure = "
                    "\"dilatancy\".");

@@ -22,12 +22,14 @@ Section declare_buildings() {
         .assumes("Height of buildings whose data give none")
         .live_in({.label = "Height", .slider_low = 0.5, .slider_high = 40, .first = 6}, "height_m");
     s.text(
-        "resistance_attribute", &BuildingsSpec::resistance_attribute, "every building has resistance_Pa",
-        "Attribute that holds the pressure in Pa that a building withstands, or text with its unit such as '30 kPa'.");
+         "resistance_attribute", &BuildingsSpec::resistance_attribute, "every building has resistance_Pa",
+         "Attribute that holds the pressure in Pa that a building withstands, or text with its unit such as '30 kPa'.")
+        .refused_by_depth_averaged("has no structures that fail");
     s.optional_key(
          "resistance_Pa", "Pa", &BuildingsSpec::resistance, between(1, 1e12), "buildings never fail",
          "Impact pressure (outputs.impact_patch_edge_m) above which a building is destroyed: it is gone from then on.")
-        .assumes("Resistance of buildings");
+        .assumes("Resistance of buildings")
+        .refused_by_depth_averaged("has no structures that fail");
     return s.take();
 }
 
@@ -60,7 +62,8 @@ Section declare_barrier() {
                   .tick = "Net",
                   .tick_help = "Lets the finer share of the debris through its meshes and holds the rest",
                   .unit = "%",
-                  .factor = 100});
+                  .factor = 100})
+        .refused_by_depth_averaged("has no nets");
     s.optional_key("clearance_m", "m", &BarrierSpec::clearance, above_to(0, 100), "it reaches the ground",
                    "Height above the ground of the gap below it, as nets hang across a torrent: debris passes freely "
                    "there; at least one particle spacing, or nothing gets through.")
@@ -71,7 +74,8 @@ Section declare_barrier() {
                   .tick = "Gap below",
                   .tick_help = "It hangs above the ground: debris passes below it"})
         .at_least_spacings(1, "nothing passes through lower gaps; smaller particles allow less")
-        .below_key("height_m");
+        .below_key("height_m")
+        .refused_by_depth_averaged("has nothing below a structure");
     s.optional_key("resistance_Npm", "N/m", &BarrierSpec::resistance_force, between(1, 1e12), "it never fails",
                    "Filtered force per metre of the line above which it is destroyed: it is gone from then on.")
         .live_in({.label = "Resistance",
@@ -79,10 +83,12 @@ Section declare_barrier() {
                   .slider_high = 1000,
                   .first = 200,
                   .tick = "Fails under load",
-                  .tick_help = "Beyond this mean force on its line it is gone"});
+                  .tick_help = "Beyond this mean force on its line it is gone"})
+        .refused_by_depth_averaged("has no structures that fail");
     s.optional_key("resistance_Pa", "Pa", &BarrierSpec::resistance_pressure, between(1, 1e12), "it never fails",
                    "Impact pressure (outputs.impact_patch_edge_m) above which it is destroyed.")
-        .live_as();
+        .live_as()
+        .refused_by_depth_averaged("has no structures that fail");
     s.exactly_one_of({"line_m", "file"});
     s.exactly_one_of({"height_m", "crest_elevation_m"});
     return s.take();

@@ -70,6 +70,7 @@ Section declare_zoom() {
     s.at_most_one_of({"particle_spacing_m", "target_layers"});
     s.key("surroundings_m", "m", &ZoomSpec::surroundings, between(0, 1e4),
           "How far beyond the boundary particles are computed on; farther out they are removed.");
+    s.for_particles_only();
     s.rule([usual](const ZoomSpec& zoom, const SceneSpec&, double) -> std::optional<Violation> {
         if (zoom.structure.empty() && zoom.margin != usual.margin) {
             return Violation{"margin_m", ": needs structure; it is the distance from that to the boundary"};

@@ -9,7 +9,6 @@
 #include "report/hardware.hpp"
 #include "report/number_text.hpp"
 #include "report/results.hpp"
-#include "scene/depth_averaged_keys.hpp"
 #include "sim/stage_times.hpp"
 
 namespace talus::report {
@@ -194,9 +193,8 @@ Json parameter_table(const scene::Scene& scene, bool set) {
         // Printed in full elsewhere: at the top, under Assumptions, beside the computed front velocities.
         if (section.name == "scene" || section.name == "report" || section.name == "observation") return;
         if (is_set(scene, section, index, parameter, value) != set) return;
-        const std::string key = key_path(section, index, parameter);
-        const bool unused =
-            uses_particles(scene) ? !scene.zoom && scene::for_depth_averaged_only(key) : scene::for_particles_only(key);
+        const bool unused = uses_particles(scene) ? !scene.zoom && parameter.use == params::KeyUse::depth_averaged
+                                                  : parameter.use == params::KeyUse::particles;
         if (unused && !set) return;
         Json row = {{"key", parameter.key},
                     {"value", shown(parameter, value)},
@@ -259,7 +257,7 @@ Json not_set(const scene::Scene& scene, const run::RunResult& result) {
                                    const params::Parameter& parameter, const params::ParameterValue& value) {
         if (parameter.assumption.empty() || is_set(scene, section, index, parameter, value)) return;
         if (!matters(scene, result, section, index, parameter)) return;
-        if (result.depth_averaged() && scene::for_particles_only(key_path(section, index, parameter))) return;
+        if (result.depth_averaged() && parameter.use == params::KeyUse::particles) return;
         add(parameter.assumption, shown(parameter, value), parameter.unit, key_path(section, index, parameter));
     });
     for (std::size_t i = 0; i < scene.releases.size(); ++i) {

@@ -39,10 +39,10 @@ double slide(const sim::Model& model, const sim::Ground& ground, SlidingBlock& b
     v = v + (n * n.z - Vec3<double>{0, 0, 1}) * (model.gravity * time_step);
     v = sim::slowed_by_drag(model, resistance, below, 0.0, block.thickness, v, time_step);
     const double before = length(v), weight = model.gravity * n.z;
-    const double rise =
-        model.samosat.on ? sim::slow_share(model.samosat.fluidization, weight * block.thickness, before * before) : 0;
-    const double friction = resistance.friction_coefficient * (1 + rise) * effective_share * weight +
-                            resistance.cohesion / (model.rest_density * block.thickness);
+    const double coefficient = model.laws.moving_friction<double>().at(resistance.friction_coefficient,
+                                                                       weight * block.thickness, before * before);
+    const double friction =
+        coefficient * effective_share * weight + resistance.cohesion / (model.rest_density * block.thickness);
     const double after = std::max(0.0, before - friction * time_step);
     block.velocity = before > 0 ? v * (after / before) : Vec3<double>{};
     block.position.x += block.velocity.x * time_step;

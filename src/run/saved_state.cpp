@@ -11,7 +11,6 @@
 #include "core/hash.hpp"
 #include "core/try.hpp"
 #include "params/fields.hpp"
-#include "scene/depth_averaged_keys.hpp"
 
 namespace talus::run {
 namespace {
@@ -29,8 +28,8 @@ bool has_part(const params::Section& section, const params::Parameter& parameter
         "outputs.series_interval_s", "outputs.geoid_height_m", "outputs.peak_thickness", "outputs.intensity_guideline",
         "outputs.contours",          "outputs.tracks"};
     const std::string key = section.name + "." + parameter.key;
-    const bool of_the_other =
-        model == params::ModelChoice::particles ? scene::for_depth_averaged_only(key) : scene::for_particles_only(key);
+    const bool of_the_other = parameter.use == (model == params::ModelChoice::particles ? params::KeyUse::depth_averaged
+                                                                                        : params::KeyUse::particles);
     // What is in a file counts, not where it lies.
     return !of_the_other && parameter.kind != params::ParameterKind::path &&
            std::find(sections.begin(), sections.end(), section.name) != sections.end() &&

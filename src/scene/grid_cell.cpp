@@ -8,7 +8,7 @@
 #include <fmt/ranges.h>
 
 #include "core/try.hpp"
-#include "scene/depth_averaged_keys.hpp"
+#include "params/fields.hpp"
 #include "scene/limits.hpp"
 
 namespace talus::scene {
@@ -22,7 +22,7 @@ constexpr double most_cells = 1e8;
 std::optional<Lacking> lacking_structure(const Scene& scene, const terrain::Building& building,
                                          const std::string& section) {
     const auto lacking = [&](const std::string& key, std::string_view which) {
-        const std::string_view why = depth_averaged_key((building.barrier ? "barrier." : "buildings.") + key)->why;
+        const std::string& why = params::parameter_of(building.barrier ? "barrier" : "buildings", key).lacking;
         return Lacking{fmt::format("{}.{}", section, key), fmt::format("{}, and \"{}\" {}", why, building.name, which)};
     };
     if (building.barrier && building.barrier->passing_share) return lacking("passing_share", "is one");
@@ -47,7 +47,7 @@ std::optional<Lacking> depth_averaged_lacks(const Scene& scene) {
     for (std::size_t r = 0; r < scene.releases.size(); ++r) {
         if (scene.releases[r].water.empty()) continue;
         return Lacking{fmt::format("release[{}].pore_pressure_hydrograph", r),
-                       std::string(depth_averaged_key("release.pore_pressure_hydrograph")->why)};
+                       params::parameter_of("release", "pore_pressure_hydrograph").lacking};
     }
     std::size_t barriers = 0;
     const auto barrier_section = [&] {
@@ -82,11 +82,13 @@ Status refuse_for_depth_averaged(const ParsedScene& parsed, const Scene& scene, 
 namespace {
 
 /// Keys that the scene gives and that are of this use.
-std::vector<std::string> given_keys(const Scene& scene, KeyUse use) {
+std::vector<std::string> given_keys(const Scene& scene, params::KeyUse use) {
     std::vector<std::string> given;
-    for (const DepthAveragedKey& entry : depth_averaged_keys()) {
-        std::string key(entry.key);
-        if (entry.use == use && scene.given_keys.contains(key)) given.push_back(std::move(key));
+    for (const params::Section& section : params::scene_sections()) {
+        for (const params::Parameter& parameter : section.parameters) {
+            std::string key = section.name + "." + parameter.key;
+            if (parameter.use == use && scene.given_keys.contains(key)) given.push_back(std::move(key));
+        }
     }
     return given;
 }
@@ -94,7 +96,7 @@ std::vector<std::string> given_keys(const Scene& scene, KeyUse use) {
 }  // namespace
 
 std::vector<std::string> depth_averaged_notes(const Scene& scene) {
-    std::vector<std::string> unused = given_keys(scene, KeyUse::noted);
+    std::vector<std::string> unused = given_keys(scene, params::KeyUse::particles);
     const auto dense = [](const terrain::Inflow& inflow) { return inflow.has_density(); };
     if (std::any_of(scene.inflows.begin(), scene.inflows.end(), dense)) {
         unused.emplace_back("the density of hydrographs");
@@ -117,7 +119,7 @@ std::vector<std::string> depth_averaged_notes(const Scene& scene) {
 
 void note_unused_by_particles(Scene& scene) {
     if (scene.zoom) return;
-    const std::vector<std::string> unused = given_keys(scene, KeyUse::own);
+    const std::vector<std::string> unused = given_keys(scene, params::KeyUse::depth_averaged);
     if (unused.empty()) return;
     scene.notes.push_back(
         fmt::format("particles do not use {}: only the depth-averaged model does", fmt::join(unused, ", ")));

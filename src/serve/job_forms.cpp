@@ -16,7 +16,6 @@
 #include "risk/study.hpp"
 #include "run/cost.hpp"
 #include "scene/builtin.hpp"
-#include "scene/depth_averaged_keys.hpp"
 #include "scene/particle_spacing.hpp"
 #include "twin/setup.hpp"
 #include "validate/suite.hpp"
@@ -46,9 +45,8 @@ Result<std::unique_ptr<Loaded>> load(const KnownScene& known) {
     return Result<std::unique_ptr<Loaded>>(std::move(loaded));
 }
 
-/// general: the key without the number of its section.
-json parameter_json(const params::Parameter& parameter, const std::string& key, const std::string& general,
-                    const std::string& label, std::optional<double> value) {
+json parameter_json(const params::Parameter& parameter, const std::string& key, const std::string& label,
+                    std::optional<double> value) {
     const params::Range& range = parameter.range;
     return {{"key", key},
             {"label", label},
@@ -61,16 +59,17 @@ json parameter_json(const params::Parameter& parameter, const std::string& key, 
               {"low_included", range.low_included},
               {"high_included", range.high_included}}},
             {"help", parameter.help},
-            {"used_by_depth_averaged", !scene::for_particles_only(general)}};
+            {"used_by_depth_averaged", parameter.use != params::KeyUse::particles}};
 }
 
 void add_material(const params::SceneSpec& spec, json& list) {
     for (const params::Parameter* parameter : twin::live_parameters()) {
         const std::string key = "material." + parameter->key;
         // What the scene's model has no use for explains nothing.
-        if (spec.solver.model == params::ModelChoice::depth_averaged && scene::for_particles_only(key)) continue;
+        const bool for_particles = parameter->use == params::KeyUse::particles;
+        if (spec.solver.model == params::ModelChoice::depth_averaged && for_particles) continue;
         const double value = twin::value_in_force(spec.material, *parameter, 0);
-        list.push_back(parameter_json(*parameter, key, key, twin::label_of(*parameter),
+        list.push_back(parameter_json(*parameter, key, twin::label_of(*parameter),
                                       std::isfinite(value) ? std::optional(value) : std::nullopt));
     }
 }
@@ -124,8 +123,8 @@ void add_releases(const params::SceneSpec& spec, json& list) {
             std::string label = "release " + twin::label_of(parameter);
             if (!alone) label += " of " + (release.name.empty() ? fmt::format("{}", i + 1) : release.name);
             list.push_back(parameter_json(
-                parameter, alone ? fmt::format("release.{}", key) : fmt::format("release[{}].{}", i, key),
-                fmt::format("release.{}", key), label, value));
+                parameter, alone ? fmt::format("release.{}", key) : fmt::format("release[{}].{}", i, key), label,
+                value));
         }
     }
 }

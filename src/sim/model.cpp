@@ -19,9 +19,6 @@ void set_material(Model& model, const params::MaterialSpec& material) {
                           : material.viscosity;
     model.kinematic_viscosity = kinematic_viscosity(model.viscosity, model.kernel.second_moment);
     model.viscosity_on_ground = material.viscosity_on_ground;
-    model.turbulent_friction = material.turbulent_friction.value_or(0);
-    model.turbulent_thickness = material.turbulent_friction_thickness.value_or(0);
-    model.laminar_viscosity = params::laminar_viscosity_of(material);
     model.cohesion = material.cohesion;
     model.pore_pressure_ratio = material.pore_pressure_ratio;
     model.pore_pressure_decay_time = material.pore_pressure_decay_time.value_or(0);
@@ -33,7 +30,7 @@ void set_material(Model& model, const params::MaterialSpec& material) {
             material.inertial_number,
             material.grain_diameter * std::sqrt(material.grain_density / material.rest_density)};
     }
-    model.samosat = samosat_of(material);
+    model.laws = ground_laws_of(material);
 }
 
 Model make_model(const params::MaterialSpec& material, const params::SolverSpec& solver, double particle_spacing,

@@ -9,9 +9,9 @@
 #include "params/spec.hpp"
 #include "params/time_step.hpp"
 #include "sim/physics/boundary_table.hpp"
+#include "sim/physics/ground_laws.hpp"
 #include "sim/physics/kernel.hpp"
 #include "sim/physics/pore_pressure.hpp"
-#include "sim/physics/samosat.hpp"
 #include "terrain/ground_cover.hpp"
 
 namespace talus::sim {
@@ -45,16 +45,13 @@ struct ModelValues {
     double viscosity = 0;            ///< XSPH smoothing per 1/60 s
     double kinematic_viscosity = 0;  ///< m2/s, the equivalent at this support radius
     bool viscosity_on_ground = false;
-    double turbulent_friction = 0;        ///< xi, m/s2; 0: none
-    double turbulent_thickness = 0;       ///< m, at which xi applies as given; 0: at any thickness
-    double laminar_viscosity = 0;         ///< m2/s, of laminar drag; 0: none
     double cohesion = 0;                  ///< Pa, on the ground and inside
     double pore_pressure_ratio = 0;       ///< r_u, at the start of a release
     double pore_pressure_decay_time = 0;  ///< s; 0: constant
     EvolvingPressure evolving_pressure;   ///< of the pore fluid
     InertialFriction inertial_friction;   ///< inside
-    Samosat samosat;                      ///< on the ground
-    double gravity = 9.80665;             ///< m/s2
+    GroundLaws laws;
+    double gravity = 9.80665;  ///< m/s2
 
     Kernel kernel;  ///< density and gradient, with the calibrated particle volume folded in
 

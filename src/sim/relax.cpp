@@ -52,9 +52,9 @@ Model without_forces(const Model& model) {
     still.solver.depenetration_speed = 1e3;  // without inertia nothing can fly apart
     still.gravity = 0;
     still.friction_coefficient = still.building_friction_coefficient = still.internal_friction_coefficient = 0;
-    still.turbulent_friction = still.laminar_viscosity = still.cohesion = 0;
+    still.cohesion = 0;
     still.inertial_friction = {};
-    still.samosat = {};
+    still.laws = {};
     still.cover = {};
     still.evolving_pressure.on = false;  // its laws divide by the weight
     still.solver.internal_friction = params::InternalFriction::pair;

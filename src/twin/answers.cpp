@@ -14,7 +14,6 @@
 #include "observe/number_names.hpp"
 #include "report/intensity.hpp"
 #include "run/verdict.hpp"
-#include "scene/depth_averaged_keys.hpp"
 #include "scene/viscosity_limit.hpp"
 #include "twin/gauges_json.hpp"
 #include "twin/journal.hpp"
@@ -88,7 +87,7 @@ json live_parameters_json(const scene::Scene& scene, const sim::Model& model, co
              {"default", number_or_null<json>(value_in_force(scene.spec.material, *parameter, scene_viscosity))},
              {"range", range_json(range_in(scene, *parameter))},
              {"help", parameter->help},
-             {"used_by_depth_averaged", !scene::for_particles_only("material." + parameter->key)},
+             {"used_by_depth_averaged", parameter->use != params::KeyUse::particles},
              {"value", number_or_null<json>(value_in_force(now, *parameter, model.viscosity))}});
     }
     return list;

@@ -113,7 +113,7 @@ TEST(Inflow, tends_to_the_normal_depth_of_voellmys_law) {
     const Grid<double> bed = plane(300, 4, 1, slope);
     Material material;
     material.friction_coefficient = friction;
-    material.turbulent_friction = xi;
+    material.laws.turbulent_friction = xi;
     Solver solver(bed, material, {}, Edges::continued);
     const double per_width = 3, drive = std::sin(angle) - friction * std::cos(angle);
     const double normal_depth = std::cbrt(per_width * per_width / (xi * drive)),

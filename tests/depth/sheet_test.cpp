@@ -37,7 +37,7 @@ TEST(Sheet, accelerates_by_gravity_along_the_slope_less_friction) {
 TEST(Sheet, reaches_the_speed_of_voellmy) {
     depth::Material material;
     material.friction_coefficient = 0.1;
-    material.turbulent_friction = 100;
+    material.laws.turbulent_friction = 100;
     const double slope = 0.35, exact = std::sqrt(100 * 0.8 * (std::sin(slope) - 0.1 * std::cos(slope)));
     EXPECT_NEAR(sheet_speed(slope, 0.8, 12, material), exact, 1e-3 * exact);
 }
@@ -46,15 +46,15 @@ TEST(Sheet, reaches_the_speed_of_manning) {
     // v = h^(2/3) sqrt(sin) / n is Voellmy's with xi = h^(1/3) / n^2.
     const double n = 0.06, slope = 0.3, thickness = 0.5;
     depth::Material material;
-    material.turbulent_friction = 1 / (n * n);
-    material.turbulent_thickness = 1;
+    material.laws.turbulent_friction = 1 / (n * n);
+    material.laws.turbulent_thickness = 1;
     const double exact = std::pow(thickness, 2.0 / 3) * std::sqrt(std::sin(slope)) / n;
     EXPECT_NEAR(sheet_speed(slope, thickness, 8, material), exact, 2e-3 * exact);
 }
 
 TEST(Sheet, reaches_the_speed_of_viscous_flow) {
     depth::Material material;
-    material.viscosity = 0.3;
+    material.laws.laminar_viscosity = 0.3;
     const double slope = 0.3, thickness = 0.5, exact = gravity * std::sin(slope) * thickness * thickness / (3 * 0.3);
     EXPECT_NEAR(sheet_speed(slope, thickness, 6, material), exact, 1e-3 * exact);
 }
@@ -66,7 +66,7 @@ TEST(Sheet, has_the_viscosity_of_the_zone_that_it_flows_over) {
     ground.laminar_viscosity.assign(160, std::numeric_limits<float>::quiet_NaN());
     for (std::size_t k = 60; k < 160; ++k) ground.laminar_viscosity[k] = static_cast<float>(viscosity);
     depth::Material material;
-    material.viscosity = 0.6;
+    material.laws.laminar_viscosity = 0.6;
     depth::Solver solver(bed, material, ground, depth::Edges::continued);
     solver.add(grid_of<float>(160, 1, 1, [&](double, double) { return thickness / std::cos(slope); }));
     advance_until(solver, 2);
@@ -81,14 +81,14 @@ TEST(Sheet, reaches_the_speed_of_bingham) {
     for (const double share : {0.2, 0.5, 0.8}) {  // of the stress on the ground
         depth::Material material;
         material.rest_density = 2000;
-        material.viscosity = 0.3;
+        material.laws.laminar_viscosity = 0.3;
         material.cohesion = share * stress;
         const double exact = stress * thickness * (1 - share) * (1 - share) * (2 + share) / (6 * 2000 * 0.3);
         EXPECT_NEAR(sheet_speed(slope, thickness, 10, material), exact, 0.01 * exact) << share;
     }
     depth::Material material;
     material.rest_density = 2000;
-    material.viscosity = 0.3;
+    material.laws.laminar_viscosity = 0.3;
     material.cohesion = 1.01 * stress;
     EXPECT_EQ(sheet_speed(slope, thickness, 10, material), 0);
 }
@@ -96,7 +96,7 @@ TEST(Sheet, reaches_the_speed_of_bingham) {
 depth::Material snow() {
     depth::Material material;
     material.friction_coefficient = 0.155;
-    material.samosat = {true, 0.222, 0.43, 0.05, 4.13};
+    material.laws.samosat = {true, 0.222, 0.43, 0.05, 4.13};
     return material;
 }
 
@@ -116,14 +116,14 @@ TEST(Sheet, of_samosat_stays_below_twice_its_friction) {
     EXPECT_EQ(sheet_speed(std::atan(0.30), 0.002, 5, snow()), 0) << "however thin it is";
     EXPECT_GT(sheet_speed(std::atan(0.32), 0.5, 5, snow()), 0.1);
     depth::Material even = snow();
-    even.samosat.fluidization = 0;
+    even.laws.samosat.fluidization = 0;
     EXPECT_GT(sheet_speed(std::atan(0.30), 0.5, 5, even), 0.1) << "friction is the same at rest";
 }
 
 TEST(Samosat, is_implicit_and_stops_debris_without_reversing_it) {
     depth::Resistance<double> r{};
     r.friction = 0.155;
-    r.fluidization = 0.222;
+    r.moving_friction.fluidization = 0.222;
     for (const double depth : {1e-4, 0.01, 1.0}) {
         r.inverse_turbulence = 1 / (gravity * 60);
         const double normal = gravity * depth * 0.8, stretch = 1 / std::sqrt(0.8);

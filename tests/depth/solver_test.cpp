@@ -18,8 +18,8 @@ double valley(double x, double y) {
 depth::Solver in_a_valley() {
     depth::Material material;
     material.friction_coefficient = 0.1;
-    material.turbulent_friction = 500;
-    material.turbulent_thickness = 1;
+    material.laws.turbulent_friction = 500;
+    material.laws.turbulent_thickness = 1;
     depth::Solver solver(grid_of(120, 120, 1, valley), material);
     solver.add(grid_of<float>(120, 120, 1, [](double x, double y) { return std::hypot(x - 42, y - 50) < 20 ? 4 : 0; }));
     return solver;
@@ -126,7 +126,7 @@ depth::Solver shifted(int shift) {
     const double middle = 40 + shift;
     depth::Material material;
     material.friction_coefficient = 0.1;
-    material.turbulent_friction = 500;
+    material.laws.turbulent_friction = 500;
     depth::Solver solver(grid_of(edge, edge, 1,
                                  [&](double x, double y) {
                                      const double r = std::hypot(x - middle, y - middle);

@@ -8,7 +8,6 @@
 #include "report/chart.hpp"
 #include "report/report_fixture.hpp"
 #include "report/results.hpp"
-#include "scene/depth_averaged_keys.hpp"
 
 namespace talus::report {
 namespace {
@@ -281,7 +280,7 @@ TEST(Report, prints_every_parameter_with_its_unit) {
             section.count(s.scene.spec) == 0)
             continue;
         for (const params::Parameter& parameter : section.parameters) {
-            const bool other = scene::for_depth_averaged_only(section.name + "." + parameter.key);
+            const bool other = parameter.use == params::KeyUse::depth_averaged;
             EXPECT_NE(has(html, "<code>" + parameter.key + "</code>"), other) << parameter.key;
         }
     }

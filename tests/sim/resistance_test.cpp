@@ -113,7 +113,7 @@ TEST(LaminarDrag, is_the_same_from_dynamic_and_kinematic_viscosity) {
     params::MaterialSpec material;
     material.rest_density = 1800;
     material.laminar_dynamic_viscosity = 90;
-    EXPECT_DOUBLE_EQ(model_of(material).laminar_viscosity, 0.05);
+    EXPECT_DOUBLE_EQ(model_of(material).laws.laminar_viscosity, 0.05);
 }
 
 TEST(LaminarDrag, is_that_of_the_zone) {

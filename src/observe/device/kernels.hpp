@@ -3,7 +3,6 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
-#include <limits>
 
 #include "observe/device/maps.hpp"
 #include "observe/particle_sums.hpp"
@@ -97,14 +96,14 @@ struct Take {
 };
 
 /// The tiles of a map: see MapAccumulator. A position is where a tile may be, an index where its cells are.
-struct TileArrays {
+struct TileArrays : MapArrays<float*> {
     std::uint32_t* index_at;  ///< by position, one more than the index; 0: no tile yet
     std::uint8_t* active;     ///< by position: reached in this step
     std::uint8_t* missing;    ///< one for all: 1 where debris reached a position without a tile
     std::uint32_t tile_columns;
     // By cell, in the order of the indices.
     WholeSum* sum;
-    float *depth, *speed, *arrival_time, *arrival_speed, *pressure, *density;
+    float* density;
 };
 
 /// Where a particle counts.
@@ -173,9 +172,8 @@ struct ClearCell {
     TALUS_DEVICE void operator()(std::uint32_t k) const {
         const std::uint32_t cell = first + k;
         tiles.sum[cell] = {0, 0};
-        tiles.depth[cell] = tiles.speed[cell] = tiles.arrival_speed[cell] = tiles.pressure[cell] = 0;
+        clear_cell(map_cell(tiles, cell));
         tiles.density[cell] = 0;
-        tiles.arrival_time[cell] = std::numeric_limits<float>::quiet_NaN();
     }
 };
 
@@ -245,9 +243,7 @@ struct UpdateCell {
 
     TALUS_DEVICE void operator()(std::uint32_t cell) const {
         const double density = own_densities ? static_cast<double>(tiles.density[cell]) : scale.rest_density;
-        update_cell(scale, tiles.sum[cell].sum(), density, time,
-                    {tiles.depth[cell], tiles.speed[cell], tiles.arrival_time[cell], tiles.arrival_speed[cell],
-                     tiles.pressure[cell]});
+        update_cell(scale, tiles.sum[cell].sum(), density, time, map_cell(tiles, cell));
     }
 };
 

@@ -18,19 +18,18 @@ struct WholeSum {
 };
 
 /// Tiles as they are copied: those of a MapAccumulator in any order, the cells of each one after another.
-struct Tiles {
+struct Tiles : MapArrays<std::vector<float>> {
     std::vector<std::uint32_t> position;  ///< of each tile
     std::vector<WholeSum> sum;            ///< of the last step
-    std::vector<float> depth, speed, arrival_time, arrival_speed, pressure, density;
+    std::vector<float> density;
     std::vector<std::uint8_t> active;  ///< by tile: the last step reached it
 
     void resize(std::size_t tiles) {
         position.resize(tiles);
         active.resize(tiles);
         sum.resize(tiles * map_tile_cells);
-        for (std::vector<float>* values : {&depth, &speed, &arrival_time, &arrival_speed, &pressure, &density}) {
-            values->resize(tiles * map_tile_cells);
-        }
+        density.resize(tiles * map_tile_cells);
+        for_each_map_array([&](auto& values) { values.resize(tiles * map_tile_cells); }, *this);
     }
 };
 

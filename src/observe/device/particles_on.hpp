@@ -76,18 +76,14 @@ class MapsOn final : public Maps {
     template <class F, class AnyTiles>
     void for_each_array(const F& f, AnyTiles& tiles) {
         f(sum_, tiles.sum);
-        f(depth_, tiles.depth);
-        f(speed_, tiles.speed);
-        f(arrival_time_, tiles.arrival_time);
-        f(arrival_speed_, tiles.arrival_speed);
-        f(pressure_, tiles.pressure);
+        for_each_map_array(f, kept_, tiles);
         f(density_, tiles.density);
     }
 
     void point_at_arrays() {
-        arrays_ = {index_at_.data(),      active_.data(),   missing_.data(), arrays_.tile_columns,
-                   sum_.data(),           depth_.data(),    speed_.data(),   arrival_time_.data(),
-                   arrival_speed_.data(), pressure_.data(), density_.data()};
+        arrays_ = {{},          index_at_.data(), active_.data(), missing_.data(), arrays_.tile_columns,
+                   sum_.data(), density_.data()};
+        for_each_map_array([](float*& to, Memory<float>& from) { to = from.data(); }, arrays_, kept_);
     }
 
     /// Makes the tiles that debris reaches for the first time.
@@ -112,9 +108,8 @@ class MapsOn final : public Maps {
         const std::size_t room = tiles + tiles / 2;
         enlarge(position_of_, count_, room);
         enlarge(sum_, cells(), room * map_tile_cells);
-        for (Memory<float>* array : {&depth_, &speed_, &arrival_time_, &arrival_speed_, &pressure_, &density_}) {
-            enlarge(*array, cells(), room * map_tile_cells);
-        }
+        for_each_map_array([&](auto& array) { enlarge(array, cells(), room * map_tile_cells); }, kept_);
+        enlarge(density_, cells(), room * map_tile_cells);
         point_at_arrays();
     }
     /// Keeps the first `kept` elements.
@@ -135,8 +130,8 @@ class MapsOn final : public Maps {
     Memory<std::uint32_t> index_at_{executor_}, index_{executor_}, position_of_{executor_};
     Memory<std::uint8_t> active_{executor_}, missing_{executor_}, active_by_index_{executor_};
     Memory<WholeSum> sum_{executor_};
-    Memory<float> depth_{executor_}, speed_{executor_}, arrival_time_{executor_}, arrival_speed_{executor_};
-    Memory<float> pressure_{executor_}, density_{executor_};
+    MapArrays<Memory<float>> kept_ = made_map_arrays([this] { return Memory<float>(executor_); });
+    Memory<float> density_{executor_};
 };
 
 template <class Executor>

@@ -6,7 +6,6 @@
 #include "core/geometry.hpp"
 #include "sim/ground.hpp"
 #include "sim/model.hpp"
-#include "sim/physics/samosat.hpp"
 #include "sim/physics/stress.hpp"
 #include "sim/rising_water.hpp"
 
@@ -15,7 +14,7 @@ namespace talus::sim {
 
 /// Whether there is speed-dependent drag.
 inline bool slows_by_speed(const Model& model) {
-    return model.turbulent_friction > 0 || model.laminar_viscosity > 0 || model.samosat.on || model.cover.drags();
+    return model.laws.slow_by_speed() || model.cover.drags();
 }
 
 /// Whether there is pore pressure anywhere.
@@ -28,7 +27,7 @@ inline bool has_pore_pressure(const Model& model) {
 /// Whether resistance is more than the model's three friction coefficients, and must be evaluated for every particle.
 inline bool resists_by_particle(const Model& model) {
     return !model.cover.empty() || model.cohesion > 0 || has_pore_pressure(model) || model.inertial_friction.on ||
-           model.samosat.on || model.evolving_pressure.on;
+           model.laws.have_moving_friction() || model.evolving_pressure.on;
 }
 
 /// When the release that a particle belongs to starts, s; 0: it came in another way.
@@ -114,8 +113,8 @@ struct GroundResistance {
 template <class Real, class AnyModel>
 TALUS_DEVICE GroundResistance<Real> ground_resistance(const AnyModel& model, const Vec3<Real>& p) {
     GroundResistance<Real> result{Real(model.friction_coefficient), Real(model.cohesion),
-                                  Real(model.turbulent_friction > 0 ? 1 / model.turbulent_friction : 0), Real(0),
-                                  Real(model.laminar_viscosity)};
+                                  Real(model.laws.turbulent_friction > 0 ? 1 / model.laws.turbulent_friction : 0),
+                                  Real(0), Real(model.laws.laminar_viscosity)};
     if (model.cover.empty()) return result;
     const auto cell = model.cover.at(p.x, p.y);
     const auto known = [](const Real& here, const Real& elsewhere) { return select(here == here, here, elsewhere); };
@@ -141,24 +140,24 @@ TALUS_DEVICE Real friction_beside_ground(const AnyModel& model, Real friction, R
                                     Real(inertial.grain_size), shear, larger(Real(0), pressure)));
 }
 
-/// Friction on the ground below a particle where it depends on the motion: the coefficient of samosAT, at most the
-/// strength of debris with the mu(I) law. `velocity`: after the step's gravity; `pressure`: at the particle, over
-/// density, m2/s2; `share`: of it, borne by the grains.
+/// Friction on the ground below a particle where it depends on the motion: the coefficient of the ground's laws, at
+/// most the strength of debris with the mu(I) law. `velocity`: after the step's gravity; `pressure`: at the particle,
+/// over density, m2/s2; `share`: of it, borne by the grains.
 ///
-/// samosAT's stress is that on the ground: the pressure at the particle and the weight below it. Debris a few particles
+/// The laws' stress is that on the ground: the pressure at the particle and the weight below it. Debris a few particles
 /// thick bears no pressure most of the time, so that it is at least the weight of the particle.
 template <class Real, class AnyModel, class AnyTerrain>
 TALUS_DEVICE Real moving_friction(const AnyModel& model, const AnyTerrain& terrain, Real friction, const Vec3<Real>& p,
                                   const Vec3<Real>& velocity, Real pressure, Real share, Real time_step) {
-    if (!model.inertial_friction.on && !model.samosat.on) return friction;
+    if (!model.inertial_friction.on && !model.laws.have_moving_friction()) return friction;
     const terrain::GroundSample<Real> below = terrain.sample(p.x, p.y);
     const auto speed_along = [&](const Vec3<Real>& v) { return length(v - below.normal * dot(v, below.normal)); };
     const Real speed = speed_along(velocity), distance = (p.z - below.height) * below.normal.z;
-    if (model.samosat.on) {
+    if (model.laws.have_moving_friction()) {
         const Real gravity(model.gravity), weight = gravity * below.normal.z;
         const Real stress = larger(pressure + weight * distance, weight * Real(model.particle_spacing));
         const Real before = speed_along({velocity.x, velocity.y, velocity.z + gravity * time_step});
-        friction = friction * (Real(1) + slow_share(Real(model.samosat.fluidization), stress, before * before));
+        friction = model.laws.template moving_friction<Real>().at(friction, stress, before * before);
     }
     return friction_beside_ground(model, friction, speed, distance, pressure * share);
 }
@@ -245,23 +244,6 @@ TALUS_DEVICE Real flow_thickness(const AnyModel& model, const terrain::GroundSam
                   counted_by_area(particles) * Real(model.particle_volume() / (width * width)) * below.normal.z);
 }
 
-/// Cube root of a positive number, to 1e-4 between exp(-6) and exp(6). Square roots alone, which every instruction set
-/// rounds in the same way: 1/3 = 1/4 + 1/16 + 1/64 + ..., and the rest is near 1.
-template <class Real>
-TALUS_DEVICE Real rough_cube_root(Real x) {
-    using std::sqrt;
-    const Real a = sqrt(sqrt(x)), b = sqrt(sqrt(a)), c = sqrt(sqrt(b)), rest = c - Real(1);
-    return a * b * c * (Real(1) + rest * (Real(1.0 / 3) - rest * Real(1.0 / 9)));
-}
-
-/// 1 / xi relative to the given value: Manning's law (1891), v = h^(2/3) S^(1/2) / n, is Voellmy's with xi = h^(1/3) /
-/// n^2.
-template <class Real, class AnyModel>
-TALUS_DEVICE Real turbulence_at(const AnyModel& model, Real thickness) {
-    if (!(model.turbulent_thickness > 0)) return 1;
-    return rough_cube_root(Real(model.turbulent_thickness) / thickness);
-}
-
 /// What a step of dv/dt = -(a v + b v^2) takes from a speed v, over what it leaves. `linear` = a dt, `square` = b v dt.
 /// The solution is v exp(-x) / (1 + b v (1 - exp(-x)) / a) with x = a dt: it never reverses the motion. The exponential
 /// is 1 / (1 + x + x^2/2 + x^3/6 + x^4/24), within 2e-4 up to x = 0.5, and goes to zero where drag is stiff.
@@ -279,7 +261,7 @@ TALUS_DEVICE Real drag_loss(const Real& linear, const Real& square) {
 ///   the whole column; applied to the lowest layer alone, debris would shear off above it wherever internal friction
 ///   is less than the slope. Debris more than a spacing above the flow's thickness is airborne and not affected. xi may
 ///   depend on the thickness (see turbulence_at).
-/// - samosAT: Voellmy's with the xi of the thickness (see wall_drag).
+/// - A law in place of xi: Voellmy's with the xi of the thickness (see wall_drag).
 /// - Laminar flow over ground that holds it: the stress 3 rho nu v / h below a parabolic profile (Nusselt 1916, "Die
 ///   Oberflaechenkondensation des Wasserdampfes"), distributed in the same way, as 3 nu v / h^2. It is the viscous
 ///   term K eta v / (8 rho h^2) of the quadratic rheology (O'Brien, Julien & Fullerton 1993, "Two-dimensional water
@@ -292,8 +274,9 @@ template <class Real, class AnyModel>
 TALUS_DEVICE Vec3<Real> slowed_by_drag(const AnyModel& model, const GroundResistance<Real>& ground,
                                        const terrain::GroundSample<Real>& below, Real distance, Real thickness,
                                        const Vec3<Real>& velocity, Real time_step) {
-    const Real turbulence = model.samosat.on ? wall_drag(model.samosat, thickness) * Real(1 / model.gravity)
-                                             : ground.inverse_turbulent_friction * turbulence_at(model, thickness);
+    const Real turbulence = model.laws.have_wall_drag()
+                                ? wall_drag(model.laws, thickness) * Real(1 / model.gravity)
+                                : ground.inverse_turbulent_friction * turbulence_at(model.laws, thickness);
     const auto in_flow = distance <= thickness + Real(model.particle_spacing);
     const Real turbulent = select(in_flow, turbulence * Real(model.gravity) / thickness, Real(0));
     const Real laminar = select(in_flow, Real(3) * ground.laminar_viscosity / (thickness * thickness), Real(0));

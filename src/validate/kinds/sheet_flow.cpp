@@ -39,14 +39,14 @@ struct Measured {
 /// The law's velocity at a height above the ground.
 double law_velocity(const SheetSpec& spec, const SheetFlow& sheet, const sim::Model& model,
                     const params::MaterialSpec& material, double height) {
-    if (spec.law == "drag" && model.samosat.on) {
-        return sheet.with_samosat(model.friction_coefficient, model.samosat.fluidization,
-                                  sim::wall_drag(model.samosat, sheet.thickness));
+    if (spec.law == "drag" && model.laws.samosat.on) {
+        return sheet.with_samosat(model.friction_coefficient, model.laws.samosat.fluidization,
+                                  sim::wall_drag(model.laws, sheet.thickness));
     }
     if (spec.law == "drag") {
         const double share = sheet.thickness / material.turbulent_friction_thickness.value_or(sheet.thickness);
         return sheet.with_drag(model.friction_coefficient, material.turbulent_friction.value_or(0) * std::cbrt(share),
-                               model.laminar_viscosity);
+                               model.laws.laminar_viscosity);
     }
     if (spec.law == "bingham") {
         return sheet.bingham(height, model.cohesion / model.rest_density, model.kinematic_viscosity);
