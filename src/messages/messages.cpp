@@ -3,6 +3,7 @@
 #include "messages/messages.hpp"
 
 #include <cmath>
+#include <utility>
 
 namespace talus::messages {
 namespace {
@@ -45,6 +46,10 @@ void put_if_there(json& to, const char* key, const std::optional<Value>& value) 
 }
 
 }  // namespace
+
+std::optional<std::string> if_any(std::string text) {
+    return text.empty() ? std::nullopt : std::optional(std::move(text));
+}
 
 void to_json(json& to, const Person& from) {
     to = json::object();
@@ -411,13 +416,6 @@ void to_json(json& to, const Listening& from) {
     to = json::object();
     put(to, "http", from.http);
     put(to, "mqtt", from.mqtt);
-}
-
-void to_json(json& to, const TriggerValues& from) {
-    to = json::object();
-    put_if_there(to, "volume_m3", from.volume_m3);
-    put_if_there(to, "pore_pressure_ratio", from.pore_pressure_ratio);
-    put_if_there(to, "discharge_m3ps", from.discharge_m3ps);
 }
 
 void to_json(json& to, const Trigger& from) {

@@ -24,6 +24,9 @@ struct Integer {
     std::int64_t value;
 };
 
+/// Nothing where it is empty.
+[[nodiscard]] std::optional<std::string> if_any(std::string text);
+
 struct Person {
     std::string id;
     std::string name;
@@ -390,16 +393,9 @@ struct Listening {
 };
 void to_json(nlohmann::json& to, const Listening& from);
 
-struct TriggerValues {
-    std::optional<double> volume_m3{};
-    std::optional<double> pore_pressure_ratio{};
-    std::optional<double> discharge_m3ps{};
-};
-void to_json(nlohmann::json& to, const TriggerValues& from);
-
 struct Trigger {
     std::string name;
-    TriggerValues limits;
+    nlohmann::json limits;
 };
 void to_json(nlohmann::json& to, const Trigger& from);
 
@@ -415,7 +411,7 @@ struct TriggeredRun {
     std::string source;
     std::string received_at;
     std::string reason;
-    TriggerValues values;
+    nlohmann::json values;
     std::optional<GaugeValue> reading;
 };
 void to_json(nlohmann::json& to, const TriggeredRun& from);

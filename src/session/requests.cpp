@@ -75,10 +75,6 @@ Question table(const char* name, json (twin::Scenario::*answer)(std::optional<do
             }};
 }
 
-std::optional<std::string> if_any(const std::string& id) {
-    return id.empty() ? std::nullopt : std::optional(id);
-}
-
 }  // namespace
 
 int status_of(Outcome outcome) {
@@ -140,7 +136,7 @@ void act(Scenarios& all, const std::string& scenario, const json& action, const 
     if (!index) return answered(no_scenario(scenario));
     all.act(*index, action, by, [answered](const Result<twin::Done>& done) {
         if (!done) return answered(refusal(Outcome::wrong, done.error().message));
-        answered(reply(messages::Done{.done = done->sentence, .created = if_any(done->created)}));
+        answered(reply(messages::Done{.done = done->sentence, .created = messages::if_any(done->created)}));
     });
 }
 
@@ -157,7 +153,7 @@ void copy(Scenarios& all, const json& wanted, const std::string& by, const Answe
     all.copy(*index, wanted.value("action", json()), by, [answered](const Result<Copied>& made) {
         if (!made) return answered(refusal(Outcome::not_now, made.error().message));
         answered(reply(messages::NewScenario{
-            .done = made->done.sentence, .created = made->name, .object = if_any(made->done.created)}));
+            .done = made->done.sentence, .created = made->name, .object = messages::if_any(made->done.created)}));
     });
 }
 

@@ -19,8 +19,8 @@ using serve::Variant;
 using Kind = Type::Kind;
 
 constexpr std::string_view json = "nlohmann::json", server_messages = "ServerMessage";
-/// These come as JSON from the modules that write them into results.json as well.
-constexpr std::array<std::string_view, 2> made_below = {"Verdict", "Figure"};
+/// These stay JSON: the first two are made by the modules that write results.json, the third is as somebody sent it.
+constexpr std::array<std::string_view, 3> as_they_came = {"Verdict", "Figure", "TriggerValues"};
 constexpr std::string_view made_from =
     "// Made from src/messages/protocol.json: edit that; docs/protocol.md tells how this is made again.\n"
     "// clang-format off\n";
@@ -81,7 +81,7 @@ class Structs {
     /// Live values of the scene file stay JSON.
     static bool is_struct(const TypeDescription& type) {
         return !type.is && type.section.empty() && type.input.empty() &&
-               std::find(made_below.begin(), made_below.end(), type.name) == made_below.end();
+               std::find(as_they_came.begin(), as_they_came.end(), type.name) == as_they_came.end();
     }
 
     void add(const Type& type) {
@@ -224,6 +224,9 @@ struct Integer {
     Integer(Whole whole) : value(static_cast<std::int64_t>(whole)) {}
     std::int64_t value;
 };
+
+/// Nothing where it is empty.
+[[nodiscard]] std::optional<std::string> if_any(std::string text);
 )" + Structs(all).header() +
            "\n}  // namespace talus::messages\n";
 }
@@ -232,6 +235,7 @@ std::string protocol_writers(const Protocol& all) {
     return std::string(made_from) + R"(#include "messages/messages.hpp"
 
 #include <cmath>
+#include <utility>
 
 namespace talus::messages {
 namespace {
@@ -274,6 +278,10 @@ void put_if_there(json& to, const char* key, const std::optional<Value>& value) 
 }
 
 }  // namespace
+
+std::optional<std::string> if_any(std::string text) {
+    return text.empty() ? std::nullopt : std::optional(std::move(text));
+}
 )" + Structs(all).writers() +
            "\n}  // namespace talus::messages\n";
 }
