@@ -20,16 +20,6 @@ std::string person_of(const std::string& trigger) {
     return fmt::format("trigger \"{}\"", trigger);
 }
 
-json alarm_json(const twin::RaisedAlarm& alarm) {
-    return {{"alarm", alarm.name},
-            {"sentence", alarm.sentence},
-            {"message", alarm.message},
-            {"time_s", alarm.time},
-            {"expected_s", alarm.expected ? json(*alarm.expected) : json()},
-            {"step", alarm.step},
-            {"hash", to_hex(alarm.hash)}};
-}
-
 }  // namespace
 
 Alerts::Alerts(Session& session, std::shared_ptr<const scene::Scene> scene, AlertSettings settings)
@@ -101,7 +91,7 @@ void Alerts::refuse(int status, const std::string& sentence, const std::string& 
 }
 
 void Alerts::note(const std::string& sentence) {
-    notes_.emplace_back(time_text(std::chrono::system_clock::now()), sentence);
+    notes_.push_back({.at = time_text(std::chrono::system_clock::now()), .sentence = sentence});
     if (notes_.size() > most_notes) notes_.pop_front();
     if (settings_.log) settings_.log(visible(sentence));
     tell();
@@ -129,8 +119,8 @@ void Alerts::take(const std::string& text, const std::string& source, const Resp
             if (status != 200) return refuse(status, answer["error"], source, respond);
             const json& scenario = answer["scenario"];
             if (scenario.is_string() && job.message.discharge()) {
-                told_[scenario.get<std::string>().front() - 'A'].reading = {
-                    {"discharge_m3ps", *job.message.discharge()}, {"received_at", job.received_at}};
+                told_[scenario.get<std::string>().front() - 'A'].reading = {.discharge_m3ps = *job.message.discharge(),
+                                                                            .received_at = job.received_at};
             }
             // Values of a gauge come too often for a list.
             if (answer["started"] == true) {
@@ -150,16 +140,17 @@ void Alerts::decide(Scenarios& all, Runs& runs, const Job& job, const Answered& 
         return trigger.name == job.message.trigger;
     });
     if (found != triggers.end()) return decide(all, runs, job, *found, answered);
-    answered(400, {{"error", fmt::format("trigger = \"{}\": there is no such trigger", job.message.trigger)}});
+    answered(400, messages::Refusal{
+                      .error = fmt::format("trigger = \"{}\": there is no such trigger", job.message.trigger)});
 }
 
 void Alerts::decide(Scenarios& all, Runs& runs, const Job& job, const params::TriggerSpec& trigger,
                     const Answered& answered) {
     Run& run = runs[job.message.trigger];
     const auto index = all.run_of(job.message.trigger);
-    const auto refused = [&](const std::string& sentence) { answered(409, {{"error", sentence}}); };
+    const auto refused = [&](const std::string& sentence) { answered(409, messages::Refusal{.error = sentence}); };
     const auto idle = [&](const std::string& sentence) {
-        answered(200, {{"done", sentence}, {"scenario", nullptr}, {"started", false}});
+        answered(200, messages::TriggerAnswer{.done = sentence, .scenario = {}, .started = false});
     };
     if (run.starting) return refused(fmt::format("the run of trigger \"{}\" is being prepared", job.message.trigger));
     if (index) {
@@ -186,7 +177,7 @@ void Alerts::decide(Scenarios& all, Runs& runs, const Job& job, const params::Tr
 
 void Alerts::start(Scenarios& all, Run& run, const Job& job, const Answered& answered) {
     if (!all.has_place(job.message.trigger)) {
-        return answered(409, {{"error", "every place for a scenario is taken; end one first"}});
+        return answered(409, messages::Refusal{.error = "every place for a scenario is taken; end one first"});
     }
     json action = {{"action", "trigger"},
                    {"trigger", job.message.trigger},
@@ -197,10 +188,10 @@ void Alerts::start(Scenarios& all, Run& run, const Job& job, const Answered& ans
     run.starting = true;
     all.start_by_trigger(action, person_of(job.message.trigger), [&run, job, answered](const Result<Copied>& made) {
         run.starting = false;
-        if (!made) return answered(400, {{"error", made.error().message}});
+        if (!made) return answered(400, messages::Refusal{.error = made.error().message});
         run.began = job.message.time;
         run.armed = false;
-        answered(200, {{"done", made->done.sentence}, {"scenario", made->name}, {"started", true}});
+        answered(200, messages::TriggerAnswer{.done = made->done.sentence, .scenario = made->name, .started = true});
     });
 }
 
@@ -210,8 +201,9 @@ void Alerts::feed(Scenarios& all, int index, const Run& run, const Job& job, con
                          {"source", job.source}, {"received_at", job.received_at},
                          {"time_s", time},       {"discharge_m3ps", job.message.values["discharge_m3ps"]}};
     all.follow_gauge(index, action, person_of(job.message.trigger), [index, answered](const Result<twin::Done>& done) {
-        if (!done) return answered(400, {{"error", done.error().message}});
-        answered(200, {{"done", done->sentence}, {"scenario", Scenarios::name_of(index)}, {"started", false}});
+        if (!done) return answered(400, messages::Refusal{.error = done.error().message});
+        answered(200, messages::TriggerAnswer{
+                          .done = done->sentence, .scenario = Scenarios::name_of(index), .started = false});
     });
 }
 
@@ -225,7 +217,8 @@ void Alerts::follow(int scenario, const RunAlerts& alerts) {
     Told& told = told_[scenario];
     const std::size_t first = alerts.alarms.size() - alerts.news;
     if (first == 0) {
-        json reading = told.alerts.trigger == alerts.trigger ? told.reading : json();
+        std::optional<messages::GaugeValue> reading;
+        if (told.alerts.trigger == alerts.trigger) reading = told.reading;
         told = Told();
         told.reading = std::move(reading);
         told.generation = ++generations_;
@@ -238,20 +231,20 @@ void Alerts::follow(int scenario, const RunAlerts& alerts) {
 void Alerts::send(int scenario, std::size_t number) {
     Told& told = told_[scenario];
     const twin::RaisedAlarm& alarm = told.alerts.alarms[number];
-    const std::string name = Scenarios::name_of(scenario), now = time_text(std::chrono::system_clock::now());
-    told.raised_at[number] = now;
-    if (settings_.log)
-        settings_.log(visible(fmt::format("alarm {} in scenario {}: {}", alarm.name, name, alarm.sentence)));
+    told.raised_at[number] = time_text(std::chrono::system_clock::now());
+    if (settings_.log) {
+        settings_.log(visible(
+            fmt::format("alarm {} in scenario {}: {}", alarm.name, Scenarios::name_of(scenario), alarm.sentence)));
+    }
     if (!sender_ || behind_.empty()) return;
     if (told.alerts.trigger.is_null() && !settings_.all_runs) {
         told.delivery[number] = "not sent: no trigger started this run";
         return;
     }
-    json message = alarm_json(alarm);
+    json message = raised(scenario, told, number);
+    message.erase("delivery");
     message["scene"] = scene_->spec.scene.title;
-    message["scenario"] = name;
     message["trigger"] = told.alerts.trigger.is_null() ? json() : told.alerts.trigger["trigger"];
-    message["raised_at"] = now;
     told.outcomes[number].resize(behind_.size());
     sender_->send(message.dump(-1, ' ', false, json::error_handler_t::replace),
                   [this, scenario, number, generation = told.generation,
@@ -291,8 +284,28 @@ std::string Alerts::delivery_of(const Told& told, std::size_t alarm) const {
     return fmt::format("{}", fmt::join(parts, "; "));
 }
 
-json Alerts::describe() const {
-    json triggers = json::array(), runs = json::array(), alarms = json::array(), notes = json::array();
+messages::RaisedAlarm Alerts::raised(int scenario, const Told& told, std::size_t number) const {
+    const twin::RaisedAlarm& alarm = told.alerts.alarms[number];
+    const auto raised_at = told.raised_at.find(number);
+    return {.scenario = Scenarios::name_of(scenario),
+            .alarm = alarm.name,
+            .sentence = alarm.sentence,
+            .message = alarm.message,
+            .time_s = alarm.time,
+            .expected_s = alarm.expected,
+            .step = alarm.step,
+            .hash = to_hex(alarm.hash),
+            .raised_at = raised_at != told.raised_at.end() ? std::optional(raised_at->second) : std::nullopt,
+            .delivery = delivery_of(told, number)};
+}
+
+messages::Alerts Alerts::describe() const {
+    messages::Alerts all{.listening = {.http = settings_.http && !triggers_.empty(), .mqtt = {}},
+                         .triggers = {},
+                         .runs = {},
+                         .alarms = {},
+                         .notes = {}};
+    if (settings_.mqtt) all.listening.mqtt = mqtt_state_;
     for (const json& trigger : triggers_) {
         json takes = json::object();
         const std::pair<const char*, const char*> limits[] = {{"volume_m3", "volume_limit_m3"},
@@ -301,35 +314,23 @@ json Alerts::describe() const {
         for (const auto& [key, limit] : limits) {
             if (const json& most = trigger["values"][limit]; !most.is_null()) takes[key] = most;
         }
-        triggers.push_back({{"name", trigger["name"]}, {"limits", takes}});
+        all.triggers.push_back({.name = trigger["name"], .limits = std::move(takes)});
     }
     for (const auto& [scenario, told] : told_) {
-        const char* name = Scenarios::name_of(scenario);
         if (!told.alerts.trigger.is_null()) {
             const json& action = told.alerts.trigger;
-            runs.push_back({{"scenario", name},
-                            {"trigger", action["trigger"]},
-                            {"source", action.value("source", "")},
-                            {"received_at", action.value("received_at", "")},
-                            {"reason", action.value("reason", "")},
-                            {"values", action.value("values", json::object())},
-                            {"reading", told.reading}});
+            all.runs.push_back({.scenario = Scenarios::name_of(scenario),
+                                .trigger = action["trigger"],
+                                .source = action.value("source", ""),
+                                .received_at = action.value("received_at", ""),
+                                .reason = action.value("reason", ""),
+                                .values = action.value("values", json::object()),
+                                .reading = told.reading});
         }
-        for (std::size_t k = 0; k < told.alerts.alarms.size(); ++k) {
-            json row = alarm_json(told.alerts.alarms[k]);
-            row["scenario"] = name;
-            row["raised_at"] = told.raised_at.contains(k) ? json(told.raised_at.at(k)) : json();
-            row["delivery"] = delivery_of(told, k);
-            alarms.push_back(std::move(row));
-        }
+        for (std::size_t k = 0; k < told.alerts.alarms.size(); ++k) all.alarms.push_back(raised(scenario, told, k));
     }
-    for (const auto& [time, sentence] : notes_) notes.push_back({{"at", time}, {"sentence", sentence}});
-    return {{"listening",
-             {{"http", settings_.http && !triggers_.empty()}, {"mqtt", settings_.mqtt ? json(mqtt_state_) : json()}}},
-            {"triggers", triggers},
-            {"runs", runs},
-            {"alarms", alarms},
-            {"notes", notes}};
+    all.notes = {notes_.begin(), notes_.end()};
+    return all;
 }
 
 }  // namespace talus::serve

@@ -14,6 +14,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/result.hpp"
+#include "messages/messages.hpp"
 #include "params/spec.hpp"
 #include "serve/alarm_sender.hpp"
 #include "serve/mqtt_link.hpp"
@@ -51,7 +52,7 @@ class Alerts {
     /// The triggers of the first scenario, as its setup has them.
     void follow_triggers(const nlohmann::json& triggers);
     /// As `GET /api/alerts`.
-    [[nodiscard]] nlohmann::json describe() const;
+    [[nodiscard]] messages::Alerts describe() const;
 
   private:
     /// The run of a trigger, for the loop's thread.
@@ -63,7 +64,7 @@ class Alerts {
     using Runs = std::map<std::string, Run>;
     struct Told {  // NOLINT(bugprone-exception-escape): moving JSON does not throw
         RunAlerts alerts;
-        nlohmann::json reading;                                    // the last one; null: none
+        std::optional<messages::GaugeValue> reading;               // the last one
         std::map<std::size_t, std::string> raised_at, delivery;    // by alarm; the latter if there is one sentence
         std::map<std::size_t, std::vector<std::string>> outcomes;  // of each receiver, by alarm; empty: not known yet
         std::uint64_t generation = 0;                              // of the run: what is delivered later belongs to it
@@ -87,6 +88,7 @@ class Alerts {
     void follow(int scenario, const RunAlerts& alerts);
     void send(int scenario, std::size_t number);
     void follow_queue(std::size_t receiver, std::size_t waiting);
+    [[nodiscard]] messages::RaisedAlarm raised(int scenario, const Told& told, std::size_t number) const;
     [[nodiscard]] std::string delivery_of(const Told& told, std::size_t alarm) const;
     void tell();
 
@@ -100,7 +102,7 @@ class Alerts {
     std::map<int, Told> told_;                           // by scenario
     std::vector<bool> behind_;                           // receivers, which somebody has been told of
     std::uint64_t generations_ = 0;
-    std::deque<std::pair<std::string, std::string>> notes_;  // time and sentence, the newest last
+    std::deque<messages::AlertNote> notes_;  // the newest last
     std::string mqtt_state_;
     double allowance_ = most_at_once;
     std::chrono::steady_clock::time_point refilled_ = std::chrono::steady_clock::now();

@@ -1,3 +1,4 @@
+#include "messages/messages.hpp"
 #include "serve/api.hpp"
 #include "session/json_text.hpp"
 
@@ -23,7 +24,7 @@ void add_calibration_routes(Router& router, Session& session, Calibrations& cali
                     change(session, request, respond, [&](const std::string&) {
                         const Status cancelled = calibrations.cancel();
                         respond(cancelled
-                                    ? json_response(200, {{"done", "calibration cancelled"}, {"created", nullptr}})
+                                    ? json_response(200, messages::Done{.done = "calibration cancelled", .created = {}})
                                     : error_response(409, cancelled.error().message));
                     });
                 }});

@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include "geo/orthophoto.hpp"
+#include "messages/messages.hpp"
 #include "serve/api.hpp"
 #include "session/json_text.hpp"
 #include "session/thinned.hpp"
@@ -119,7 +120,7 @@ void control(Session& session, const Request& request, const Respond& respond) {
         return;
     }
     session.people_changed();
-    respond(json_response(200, {{"done", what}, {"created", nullptr}}));
+    respond(json_response(200, messages::Done{.done = what, .created = {}}));
 }
 
 }  // namespace

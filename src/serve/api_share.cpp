@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "core/try.hpp"
+#include "messages/messages.hpp"
 #include "serve/access.hpp"
 #include "serve/api.hpp"
 #include "serve/sharing.hpp"
@@ -11,8 +12,6 @@
 
 namespace talus::serve {
 namespace {
-
-using nlohmann::json;
 
 constexpr std::size_t longest_pem = 200'000;
 
@@ -51,15 +50,15 @@ Result<ShareWanted> read_wanted(const std::string& body) {
 
 void add_share_routes(Router& router, Sharing& sharing, Access& access) {
     const auto describe = [&sharing, &access] {
-        json shared;
+        std::optional<messages::SharedLink> shared;
         if (sharing.is_open()) {
             const std::string base = fmt::format("{}://{}/", sharing.encrypted() ? "https" : "http", sharing.host());
-            shared = {{"host", sharing.host()},
-                      {"encrypted", sharing.encrypted()},
-                      {"viewer_url", fmt::format("{}#token={}", base, access.tokens().viewer)},
-                      {"controller_url", fmt::format("{}#token={}", base, access.tokens().controller)}};
+            shared = {.host = sharing.host(),
+                      .encrypted = sharing.encrypted(),
+                      .viewer_url = fmt::format("{}#token={}", base, access.tokens().viewer),
+                      .controller_url = fmt::format("{}#token={}", base, access.tokens().controller)};
         }
-        return json_response(200, {{"shared", shared}, {"addresses", shareable_addresses()}});
+        return json_response(200, messages::Share{.shared = shared, .addresses = shareable_addresses()});
     };
     router.add({"GET", "/api/share", Role::controller,
                 [describe](const Request&, const Respond& respond) { respond(describe()); }});

@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include "messages/messages.hpp"
 #include "serve/api.hpp"
 #include "serve/library.hpp"
 #include "serve/openapi.hpp"
@@ -106,7 +107,7 @@ void add_jobs(Router& router, Start* start) {
     add("GET", "/api/jobs/cases",
         [](Start& s, const Request&, const Respond& respond) { s.job_forms().cases(respond); });
     const auto answer = [](const Status& status, const char* sentence) {
-        return status ? json_response(200, {{"done", sentence}, {"created", nullptr}})
+        return status ? json_response(200, messages::Done{.done = sentence, .created = {}})
                       : error_response(409, status.error().message);
     };
     const auto change = [&](const char* method, const char* pattern, Status (Jobs::*act)(const std::string&),
@@ -144,7 +145,7 @@ Router make_start_api(Start* start) {
                     respond(response);
                 }});
     router.add({"GET", "/api/start", Role::viewer, [start](const Request& request, const Respond& respond) {
-                    if (start == nullptr) return respond(json_response(200, {{"available", false}}));
+                    if (start == nullptr) return respond(json_response(200, messages::NoStartPage{.available = false}));
                     start->describe(request.role, respond);
                 }});
     const auto add = [&](const char* method, const char* pattern, Handle handle) {

@@ -13,7 +13,6 @@
 namespace talus::serve {
 namespace {
 
-using nlohmann::json;
 namespace fs = std::filesystem;
 
 /// Checks that a map of an ensemble fits this terrain.
@@ -29,8 +28,8 @@ Status check_extent(const fs::path& file, const Extent& map, const Extent& terra
                              file.string(), words(map), words(terrain))};
 }
 
-json number_if(bool there, double value) {
-    return there ? json(value) : json();
+std::optional<double> number_if(bool there, double value) {
+    return there ? std::optional(value) : std::nullopt;
 }
 
 }  // namespace
@@ -64,44 +63,49 @@ Result<Ensembles> Ensembles::read(const std::vector<fs::path>& folders, const sc
     return Result<Ensembles>(std::move(all));
 }
 
-json Ensembles::describe() const {
-    json list = json::array();
+messages::Ensembles Ensembles::describe() const {
+    std::vector<messages::Ensemble> list;
+    list.reserve(ensembles_.size());
     for (const Ensemble& ensemble : ensembles_) {
-        json factors = json::array(), maps = json::array();
+        std::vector<messages::EnsembleFactor> factors;
+        factors.reserve(ensemble.about.factors.size());
         for (const ensemble::Factor& f : ensemble.about.factors) {
-            factors.push_back({{"key", f.key}, {"distribution", f.distribution.text()}});
+            factors.push_back({.key = f.key, .distribution = f.distribution.text()});
         }
+        std::vector<messages::EnsembleMap> maps;
+        maps.reserve(ensemble.maps.size());
         for (const Map& map : ensemble.maps) {
             const ensemble::FinishedMap& about = map.about;
             using Kind = ensemble::FinishedMap::Kind;
             const bool threshold = about.kind == Kind::probability && !std::isnan(about.level);
-            json categories = json::array();
+            std::vector<messages::Category> categories;
+            categories.reserve(about.style.categories.size());
             for (const report::Category& c : about.style.categories) {
-                categories.push_back({{"name", c.name}, {"colour", c.colour.hex()}});
+                categories.push_back({.name = c.name, .colour = c.colour.hex()});
             }
-            maps.push_back({{"name", about.style.file},
-                            {"title", about.style.title},
-                            {"unit", about.style.unit},
-                            {"kind", about.kind == Kind::zones         ? "zones"
-                                     : about.kind == Kind::probability ? "probability"
-                                                                       : "percentile"},
-                            {"of", about.of},
-                            {"description", about.style.description},
-                            {"threshold", number_if(threshold, about.level)},
-                            {"threshold_unit", threshold ? json(about.level_unit) : json()},
-                            {"percentile", number_if(about.kind == Kind::percentile, about.level)},
-                            {"categories", categories},
-                            {"greatest", number_if(map.greatest > 0, map.greatest)}});
+            maps.push_back({.name = about.style.file,
+                            .title = about.style.title,
+                            .unit = about.style.unit,
+                            .kind = about.kind == Kind::zones         ? "zones"
+                                    : about.kind == Kind::probability ? "probability"
+                                                                      : "percentile",
+                            .of = about.of,
+                            .description = about.style.description,
+                            .threshold = number_if(threshold, about.level),
+                            .threshold_unit = threshold ? std::optional(about.level_unit) : std::nullopt,
+                            .percentile = number_if(about.kind == Kind::percentile, about.level),
+                            .categories = std::move(categories),
+                            .greatest = number_if(map.greatest > 0, map.greatest)});
         }
-        list.push_back({{"id", std::to_string(list.size() + 1)},
-                        {"name", ensemble.about.name},
-                        {"runs", ensemble.about.complete},
-                        {"failed", ensemble.about.failed},
-                        {"factors", factors},
-                        {"same_terrain", ensemble.same_terrain},
-                        {"maps", maps}});
+        list.push_back({.id = std::to_string(list.size() + 1),
+                        .name = ensemble.about.name,
+                        .runs = ensemble.about.complete,
+                        .failed = ensemble.about.failed,
+                        .factors = std::move(factors),
+                        .same_terrain = ensemble.same_terrain,
+                        .maps = std::move(maps)});
     }
-    return {{"ensembles", list}};
+    return {.ensembles = std::move(list)};
 }
 
 Bytes Ensembles::map(const std::string& ensemble, const std::string& name) const {

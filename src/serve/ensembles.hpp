@@ -4,10 +4,9 @@
 #include <string>
 #include <vector>
 
-#include <nlohmann/json.hpp>
-
 #include "core/result.hpp"
 #include "ensemble/finished_ensemble.hpp"
+#include "messages/messages.hpp"
 #include "scene/scene.hpp"
 #include "serve/message.hpp"
 
@@ -24,7 +23,7 @@ class Ensembles {
                                                 const scene::Scene& scene);
 
     /// As `GET /api/ensembles`.
-    [[nodiscard]] nlohmann::json describe() const;
+    [[nodiscard]] messages::Ensembles describe() const;
     /// A grid message, in the unit that describe() gives. nullptr: no such map.
     [[nodiscard]] Bytes map(const std::string& ensemble, const std::string& name) const;
 

@@ -1,5 +1,7 @@
 #include "serve/message.hpp"
 
+#include "messages/messages.hpp"
+
 namespace talus::serve {
 
 Response json_response(int status, const nlohmann::json& content) {
@@ -10,7 +12,7 @@ Response json_response(int status, const nlohmann::json& content) {
 }
 
 Response error_response(int status, const std::string& sentence) {
-    return json_response(status, {{"error", sentence}});
+    return json_response(status, messages::Refusal{.error = sentence});
 }
 
 Response to_response(const session::Reply& reply) {

@@ -173,7 +173,8 @@ std::string_view caller_name(Caller caller) {
     return callers[static_cast<std::size_t>(caller)];
 }
 
-Role role_of(Caller caller) {
+session::Role role_of(Caller caller) {
+    using session::Role;
     switch (caller) {
         case Caller::anyone:
             return Role::nobody;

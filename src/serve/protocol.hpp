@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "core/result.hpp"
-#include "serve/message.hpp"
 #include "serve/type_notation.hpp"
+#include "session/role.hpp"
 
 /// The one description of the messages, protocol.json. From it are made the OpenAPI document that the server answers
 /// with, the types of the page (web/src/protocol) and the tables of docs/protocol.md.
@@ -18,7 +18,7 @@ enum class Caller { anyone, trigger, viewer, controller, control, person };
 
 [[nodiscard]] std::string_view caller_name(Caller caller);
 /// What the token of such a caller must entitle to.
-[[nodiscard]] Role role_of(Caller caller);
+[[nodiscard]] session::Role role_of(Caller caller);
 
 /// A type in the notation, or media types.
 struct Content {

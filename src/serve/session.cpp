@@ -27,8 +27,8 @@ Status Session::open(twin::ScenarioOptions options, std::function<void(std::stri
     room.title = scene_->spec.scene.title;
     // For the page's links to share: no one receives a token with more permissions than their own.
     room.links = [this](Role role) {
-        json links = {{"viewer", tokens_.viewer}};
-        if (role == Role::controller) links["controller"] = tokens_.controller;
+        messages::Session::Links links{.viewer = tokens_.viewer};
+        if (role == Role::controller) links.controller = tokens_.controller;
         return links;
     };
     room.watching = [this](std::vector<Audience> audience) {

@@ -48,7 +48,7 @@ class Session final : public Watcher {
     void tick();
     [[nodiscard]] People& people() { return room_->people(); }
     void people_changed();
-    [[nodiscard]] nlohmann::json describe(Role role) const { return room_->describe(role); }
+    [[nodiscard]] messages::Session describe(Role role) const { return room_->describe(role); }
 
     [[nodiscard]] Loop& loop() { return *loop_; }
     /// For work of fractions of a second that should not delay either thread.

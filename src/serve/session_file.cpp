@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "core/try.hpp"
+#include "messages/messages.hpp"
 #include "run/threads.hpp"
 #include "serve/library.hpp"
 #include "session/json_text.hpp"
@@ -42,18 +43,19 @@ Result<SavedScenario> read_scenario(const json& written) {
 }  // namespace
 
 json write_session(Scenarios& all, const std::string& name, const std::string& title, const json& laid) {
-    json scenarios = json::array();
-    for (const std::string& letter : all.names()) {
+    const std::vector<std::string> names = all.names();
+    std::vector<messages::SavedScenario> scenarios;
+    scenarios.reserve(names.size());
+    for (const std::string& letter : names) {
         const int index = *all.find(letter);
-        scenarios.push_back({{"name", letter},
-                             {"title", all.setup(index).value("name", "")},
-                             {"journal", twin::journal_json(all.at(index))}});
+        scenarios.push_back(
+            {.name = letter, .title = all.setup(index).value("name", ""), .journal = twin::journal_json(all.at(index))});
     }
-    json session{{"talus_session", session_version},
-                 {"name", name},
-                 {"title", title},
-                 {"saved_at", utc_now()},
-                 {"scenarios", scenarios}};
+    json session = messages::SessionFile{.talus_session = session_version,
+                                         .name = name,
+                                         .title = title,
+                                         .saved_at = utc_now(),
+                                         .scenarios = std::move(scenarios)};
     session.update(laid);
     return session;
 }

@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "core/try.hpp"
+#include "messages/messages.hpp"
 #include "scene/builtin.hpp"
 #include "scene/bundle.hpp"
 #include "serve/api.hpp"
@@ -25,25 +26,25 @@ const char* name_of(KnownScene::Kind kind) {
     return kind == KnownScene::Kind::recent ? "recent" : kind == KnownScene::Kind::own ? "own" : "builtin";
 }
 
-json to_json(const KnownScene& scene) {
-    return {{"id", scene.id},
-            {"title", scene.title},
-            {"kind", name_of(scene.kind)},
-            {"file", scene.file.empty() ? json() : json(scene.file.string())},
-            {"opened_at", scene.opened_at.empty() ? json() : json(scene.opened_at)},
-            {"missing", scene.missing}};
+messages::KnownScene message_of(const KnownScene& scene) {
+    return {.id = scene.id,
+            .title = scene.title,
+            .kind = name_of(scene.kind),
+            .file = messages::if_any(scene.file.string()),
+            .opened_at = messages::if_any(scene.opened_at),
+            .missing = scene.missing};
 }
 
-json to_json(const SavedSession& saved) {
-    return {{"id", saved.id},
-            {"name", saved.name},
-            {"title", saved.title},
-            {"saved_at", saved.saved_at},
-            {"scenarios", saved.scenarios}};
+messages::SavedSession message_of(const SavedSession& saved) {
+    return {.id = saved.id,
+            .name = saved.name,
+            .title = saved.title,
+            .saved_at = saved.saved_at,
+            .scenarios = saved.scenarios};
 }
 
-Response done(const std::string& sentence, const json& created = nullptr) {
-    return json_response(200, {{"done", sentence}, {"created", created}});
+Response done(const std::string& sentence, const std::optional<std::string>& created = {}) {
+    return json_response(200, messages::Done{.done = sentence, .created = created});
 }
 
 Response of(const Status& status, const std::string& sentence) {
@@ -81,27 +82,31 @@ void Start::close() {
 void Start::describe(Role role, const Respond& respond) {
     const OpenSessionPtr open = host_.open();
     const std::lock_guard lock(mutex_);
-    json page = {{"available", true},
-                 {"open", open ? json{{"title", open->session.scene()->spec.scene.title}} : json()},
-                 {"opening", state_.busy ? json{{"what", state_.what}, {"share", state_.share}} : json()},
-                 {"error", state_.error.empty() ? json() : json(state_.error)},
-                 {"count", state_.count},
-                 {"notes", state_.notes},
-                 {"program", "talus " TALUS_VERSION},
-                 {"role", role_name(role)}};
+    messages::StartPage page{.available = true,
+                             .open = {},
+                             .opening = {},
+                             .error = messages::if_any(state_.error),
+                             .count = state_.count,
+                             .notes = state_.notes,
+                             .program = "talus " TALUS_VERSION,
+                             .role = role_name(role)};
+    if (open) page.open = {.title = open->session.scene()->spec.scene.title};
+    if (state_.busy) page.opening = {.what = state_.what, .share = state_.share};
     if (role < Role::controller) {  // paths and names of files are not for viewers
         respond(json_response(200, page));
         return;
     }
     files_.post([this, respond, page]() mutable {
-        page["folder"] = library_.folder().string();
+        page.folder = library_.folder().string();
         const UploadLimits& limits = settings_.uploads;
-        page["uploads"] = {{"bytes", limits.bytes}, {"files", limits.files}, {"cells", limits.cells}};
-        page["jobs"] = jobs_->describe();
-        page["scenes"] = page["sessions"] = json::array();
-        for (const KnownScene& scene : library_.scenes()) page["scenes"].push_back(to_json(scene));
-        for (const SavedSession& saved : library_.sessions()) page["sessions"].push_back(to_json(saved));
-        respond(json_response(200, page));
+        page.uploads = {.bytes = limits.bytes, .files = limits.files, .cells = limits.cells};
+        auto& scenes = page.scenes.emplace();
+        for (const KnownScene& scene : library_.scenes()) scenes.push_back(message_of(scene));
+        auto& sessions = page.sessions.emplace();
+        for (const SavedSession& saved : library_.sessions()) sessions.push_back(message_of(saved));
+        json answer = page;
+        answer["jobs"] = jobs_->describe();
+        respond(json_response(200, answer));
     });
 }
 
@@ -179,7 +184,7 @@ void Start::begin(Wanted wanted, const Respond& respond) {
         state_.share = 0;
         stop_ = false;
     }
-    respond(json_response(202, {{"done", "opening " + wanted.what}, {"created", nullptr}}));
+    respond(json_response(202, messages::Done{.done = "opening " + wanted.what, .created = {}}));
     opener_.post([this, wanted = std::move(wanted)] { work(wanted); });
 }
 
@@ -380,7 +385,7 @@ void Start::add_job(const Request& request, const Respond& respond) {
     if (!wanted) return respond(error_response(400, wanted.error().message));
     const auto add = [this, wanted = *wanted, respond](const std::optional<KnownScene>& scene) {
         const auto added = jobs_->add(wanted, scene);
-        respond(added ? json_response(202, {{"done", "the job is in the queue"}, {"created", *added}})
+        respond(added ? json_response(202, messages::Done{.done = "the job is in the queue", .created = *added})
                       : error_response(409, added.error().message));
     };
     if (wanted->kind == JobKind::validation) return add({});

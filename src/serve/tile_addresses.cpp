@@ -10,6 +10,7 @@
 #include <fmt/format.h>
 
 #include "core/try.hpp"
+#include "messages/messages.hpp"
 #include "serve/message.hpp"
 #include "session/json_text.hpp"
 #include "twin/json_keys.hpp"
@@ -176,14 +177,15 @@ std::vector<std::string> TileAddresses::addresses() const {
 
 json TileAddresses::describe() const {
     json list = json::array();
-    for (const TileAddress& tile : list_) list.push_back({{"id", tile.id}, {"address", tile.address}, {"by", tile.by}});
+    for (const TileAddress& tile : list_)
+        list.push_back(messages::TileAddress{.id = tile.id, .address = tile.address, .by = tile.by});
     return list;
 }
 
 json TileAddresses::saved() const {
     json list = json::array();
     for (const TileAddress& tile : list_) {
-        if (!tile.by.empty()) list.push_back({{"address", tile.address}, {"by", tile.by}});
+        if (!tile.by.empty()) list.push_back(messages::SavedTiles{.address = tile.address, .by = tile.by});
     }
     return list;
 }

@@ -81,13 +81,13 @@ void DepthAveragedResults::finish(const Task& task, Outcome outcome) {
     one.made = std::move(outcome.made);
 }
 
-json DepthAveragedResults::describe(int scenario) const {
+messages::DepthAveragedStatus DepthAveragedResults::describe(int scenario) const {
     const Slot& one = slot(scenario);
-    return {{"scenario", Scenarios::name_of(scenario)},
-            {"state", name_of(one.state)},
-            {"message", one.message},
-            {"share", one.state == State::running ? json(one.share) : json()},
-            {"result", one.made ? one.made->to_json() : json()}};
+    return {.scenario = Scenarios::name_of(scenario),
+            .state = name_of(one.state),
+            .message = one.message,
+            .share = one.state == State::running ? std::optional(one.share) : std::nullopt,
+            .result = one.made ? std::optional(one.made->message()) : std::nullopt};
 }
 
 std::string DepthAveragedResults::why_none(int scenario) const {
@@ -157,8 +157,8 @@ Result<bool> read_switch(const json& wanted) {
     return on->get<bool>();
 }
 
-json switched(bool on) {
-    return {{"done", fmt::format("depth-averaged model {}", on ? "on" : "off")}, {"created", nullptr}};
+messages::Done switched(bool on) {
+    return {.done = fmt::format("depth-averaged model {}", on ? "on" : "off"), .created = {}};
 }
 
 }  // namespace talus::session

@@ -10,6 +10,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "messages/messages.hpp"
 #include "session/scenarios.hpp"
 #include "twin/depth_averaged.hpp"
 
@@ -51,7 +52,7 @@ class DepthAveragedResults {
     void finish(const Task& task, Outcome outcome);
 
     /// As `GET /api/scenarios/{s}/depth_averaged`.
-    [[nodiscard]] nlohmann::json describe(int scenario) const;
+    [[nodiscard]] messages::DepthAveragedStatus describe(int scenario) const;
     /// The result for the present setup; nullptr: there is none yet.
     [[nodiscard]] Run result(int scenario) const { return slot(scenario).made; }
     /// Why there is no result, as a sentence.
@@ -115,6 +116,6 @@ class DepthAveragedInTurns {
 /// What `{"on": true}` asks for.
 [[nodiscard]] Result<bool> read_switch(const nlohmann::json& wanted);
 /// As it is answered.
-[[nodiscard]] nlohmann::json switched(bool on);
+[[nodiscard]] messages::Done switched(bool on);
 
 }  // namespace talus::session

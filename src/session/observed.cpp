@@ -4,8 +4,8 @@
 #include <utility>
 #include <vector>
 
-#include "core/number_or_null.hpp"
 #include "ensemble/predict.hpp"
+#include "messages/messages.hpp"
 #include "twin/answers.hpp"
 #include "twin/results.hpp"
 #include "twin/table_entry.hpp"
@@ -16,8 +16,8 @@ namespace {
 using nlohmann::json;
 
 /// `entries`: of the setup.
-json observed_json(const scene::Scene& scene, const run::RunResult& result, const json& entries) {
-    std::vector<json> ids;
+messages::Observed observed_in(const scene::Scene& scene, const run::RunResult& result, const json& entries) {
+    std::vector<std::string> ids;
     for (const std::string& section : twin::sections_of(twin::TableKind::observation)) {
         for (const json& entry : entries) {
             if (entry["section"] == section) ids.push_back(entry["id"]);
@@ -25,24 +25,25 @@ json observed_json(const scene::Scene& scene, const run::RunResult& result, cons
     }
     const std::vector<ensemble::ObservedValue> observed = ensemble::observed_values(scene);
     const std::vector<double> predicted = ensemble::predicted_values(scene, result.observation);
-    json rows = json::array();
+    std::vector<messages::ObservedRow> rows;
+    rows.reserve(observed.size());
     for (std::size_t k = 0; k < observed.size(); ++k) {
         const ensemble::ObservedValue& o = observed[k];
         const bool is = o.kind == ensemble::ObservedValue::Kind::equal;
         const bool reached = std::isfinite(predicted[k]) && !(o.unreached < 0 && predicted[k] < 0);
         const double deviation = deviation_of(o, reached ? predicted[k] : o.unreached);
-        rows.push_back({{"id", k < ids.size() ? ids[k] : json()},
-                        {"name", o.name},
-                        {"unit", o.unit},
-                        {"observed", o.value},
-                        {"uncertainty", o.uncertainty},
-                        {"is", is                                                  ? "equal"
-                               : o.kind == ensemble::ObservedValue::Kind::at_least ? "at_least"
-                                                                                   : "below"},
-                        {"computed", reached ? json(predicted[k]) : json()},
-                        {"deviation", number_or_null<json>(deviation)}});
+        rows.push_back({.id = k < ids.size() ? std::optional(ids[k]) : std::nullopt,
+                        .name = o.name,
+                        .unit = o.unit,
+                        .observed = o.value,
+                        .uncertainty = o.uncertainty,
+                        .is = is                                                  ? "equal"
+                              : o.kind == ensemble::ObservedValue::Kind::at_least ? "at_least"
+                                                                                  : "below",
+                        .computed = reached ? std::optional(predicted[k]) : std::nullopt,
+                        .deviation = deviation});
     }
-    return {{"time_s", result.simulated_time}, {"rows", std::move(rows)}};
+    return {.time_s = result.simulated_time, .rows = std::move(rows)};
 }
 
 }  // namespace
@@ -51,7 +52,7 @@ Rest observed(Scenarios& all, int index, const Arguments& /*arguments*/) {
     const twin::Scenario& scenario = all.at(index);
     return [outcome = twin::outcome_of(scenario), entries = twin::setup_json(scenario)["observations"]] {
         const auto& [scene, result] = outcome;
-        return reply(observed_json(scene, result, entries));
+        return reply(observed_in(scene, result, entries));
     };
 }
 

@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "messages/messages.hpp"
 #include "session/json_text.hpp"
 #include "session/thinned.hpp"
 #include "session/url.hpp"
@@ -119,12 +120,13 @@ PageAnswer PageApi::files(const std::string& scenario, const std::string& name) 
         files_ = std::move(*files);
         files_of_ = name.empty() ? scenario : "";
     }
-    json listed = json::array();
+    std::vector<messages::ExportFile> listed;
+    listed.reserve(files_.size());
     for (const twin::RunFile& file : files_) {
         if (file.name == name) return {200, file.type, std::make_shared<const std::string>(file.bytes())};
-        listed.push_back({{"name", file.name}, {"bytes", nullptr}, {"what", file.what}});
+        listed.push_back({.name = file.name, .bytes = {}, .what = file.what});
     }
-    if (name.empty()) return to_answer(reply({{"files", std::move(listed)}}));
+    if (name.empty()) return to_answer(reply(messages::ExportFiles{.files = std::move(listed)}));
     if (files_.empty()) return refused(Outcome::unknown, "there are no results yet: run the simulation first");
     return not_here("GET", fmt::format("/api/scenarios/{}/exports/{}", scenario, name));
 }
@@ -171,7 +173,7 @@ PageAnswer PageApi::control(const json& body, const std::string& person, const N
     if (const Status changed = session_.control(what, person, now()); !changed) {
         return refused(Outcome::not_now, changed.error().message);
     }
-    return to_answer(reply({{"done", what}, {"created", nullptr}}));
+    return to_answer(reply(messages::Done{.done = what, .created = {}}));
 }
 
 }  // namespace talus::session

@@ -179,20 +179,16 @@ bool People::waiting() const {
            std::any_of(members_.begin(), members_.end(), [](const Member& m) { return m.away; });
 }
 
-nlohmann::json People::to_json() const {
-    using nlohmann::json;
-    json people = json::array();
+messages::PeopleMessage People::message() const {
+    messages::PeopleMessage all{};
     for (const Member& m : members_) {
         if (m.away) continue;
-        people.push_back({{"id", m.id},
-                          {"name", m.name},
-                          {"role", role_name(m.role)},
-                          {"colour", m.colour},
-                          {"mark", m.mark ? json(*m.mark) : json()}});
+        all.people.push_back(
+            {.id = m.id, .name = m.name, .role = role_name(m.role), .colour = m.colour, .mark = m.mark});
     }
-    json request;
-    if (request_) request = {{"id", request_->id}, {"name", find(request_->id)->name}};
-    return {{"people", people}, {"controller", find(holder_) ? json(holder_) : json()}, {"request", request}};
+    if (find(holder_) != nullptr) all.controller = holder_;
+    if (request_) all.request = {.id = request_->id, .name = find(request_->id)->name};
+    return all;
 }
 
 }  // namespace talus::session

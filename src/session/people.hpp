@@ -6,9 +6,8 @@
 #include <optional>
 #include <string>
 
-#include <nlohmann/json.hpp>
-
 #include "core/result.hpp"
+#include "messages/messages.hpp"
 #include "session/role.hpp"
 
 namespace talus::session {
@@ -53,8 +52,7 @@ class People {
     /// Who has this secret and is here; nullptr: nobody.
     [[nodiscard]] const Person* whose(const std::string& secret) const;
     [[nodiscard]] std::size_t count() const;
-    /// Keys people, controller and request, as in the protocol's message `people`.
-    [[nodiscard]] nlohmann::json to_json() const;
+    [[nodiscard]] messages::PeopleMessage message() const;
 
   private:
     struct Member : Person {

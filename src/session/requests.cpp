@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "core/try.hpp"
+#include "messages/messages.hpp"
 #include "session/json_text.hpp"
 #include "session/observed.hpp"
 #include "twin/answers.hpp"
@@ -80,10 +81,6 @@ Question table(const char* name, json (*answer)(const twin::Scenario&, std::opti
             }};
 }
 
-json or_null(const std::string& id) {
-    return id.empty() ? json() : json(id);
-}
-
 }  // namespace
 
 int status_of(Outcome outcome) {
@@ -96,7 +93,7 @@ Reply reply(const json& content) {
 }
 
 Reply refusal(Outcome outcome, const std::string& sentence) {
-    return {outcome, std::make_shared<const std::string>(to_text({{"error", sentence}}))};
+    return {outcome, std::make_shared<const std::string>(to_text(messages::Refusal{.error = sentence}))};
 }
 
 Reply no_scenario(const std::string& name) {
@@ -147,7 +144,7 @@ void act(Scenarios& all, const std::string& scenario, const json& action, const 
     if (!index) return answered(no_scenario(scenario));
     all.act(*index, action, by, [answered](const Result<twin::Done>& done) {
         if (!done) return answered(refusal(Outcome::wrong, done.error().message));
-        answered(reply({{"done", done->sentence}, {"created", or_null(done->created)}}));
+        answered(reply(messages::Done{.done = done->sentence, .created = messages::if_any(done->created)}));
     });
 }
 
@@ -163,8 +160,8 @@ void copy(Scenarios& all, const json& wanted, const std::string& by, const Answe
     if (!index) return answered(no_scenario(name->get<std::string>()));
     all.copy(*index, wanted.value("action", json()), by, [answered](const Result<Copied>& made) {
         if (!made) return answered(refusal(Outcome::not_now, made.error().message));
-        answered(
-            reply({{"done", made->done.sentence}, {"created", made->name}, {"object", or_null(made->done.created)}}));
+        answered(reply(messages::NewScenario{
+            .done = made->done.sentence, .created = made->name, .object = messages::if_any(made->done.created)}));
     });
 }
 
@@ -173,7 +170,7 @@ Reply end(Scenarios& all, const std::string& scenario) {
     if (!index) return no_scenario(scenario);
     const Status removed = all.remove(*index);
     if (!removed) return refusal(Outcome::not_now, removed.error().message);
-    return reply({{"done", "scenario " + scenario + " ended"}, {"created", nullptr}});
+    return reply(messages::Done{.done = "scenario " + scenario + " ended", .created = {}});
 }
 
 }  // namespace talus::session

@@ -15,8 +15,7 @@ using nlohmann::json;
 constexpr int protocol_version = 1;
 constexpr std::size_t crowd = 50;  // up to this number, people get the list ten times a second; above it, less often
 
-Bytes typed_text(const char* type, json message) {
-    message["type"] = type;
+Bytes bytes_of(const json& message) {
     return std::make_shared<const std::string>(to_text(message));
 }
 
@@ -39,7 +38,8 @@ bool read_mark(const json& at, std::optional<std::array<double, 3>>& mark) {
 
 Bytes message_text(Kept what, json message) {
     constexpr std::array types{"setup", "state", "depth_averaged", "calibration", "alerts", "overlays"};
-    return typed_text(types[static_cast<std::size_t>(what)], std::move(message));
+    message["type"] = types[static_cast<std::size_t>(what)];
+    return bytes_of(message);
 }
 
 PackedFrames pack(const FrameSet& set) {
@@ -53,25 +53,27 @@ PackedFrames pack(const FrameSet& set) {
     return packed;
 }
 
-json Room::describe(Role role) const {
-    json session = people_.to_json();
-    session["protocol"] = protocol_version;
-    session["id"] = settings_.id;
-    session["program"] = settings_.program;
-    session["title"] = settings_.title;
-    session["you"] = {{"role", role_name(role)}};
-    session["scenarios"] = names_;
-    session["links"] = settings_.links(role);
-    return session;
+messages::Session Room::describe(Role role) const {
+    messages::PeopleMessage people = people_.message();
+    return {.protocol = protocol_version,
+            .id = settings_.id,
+            .program = settings_.program,
+            .title = settings_.title,
+            .you = {.role = role_name(role)},
+            .scenarios = names_,
+            .people = std::move(people.people),
+            .controller = std::move(people.controller),
+            .request = std::move(people.request),
+            .links = settings_.links(role)};
 }
 
 const Person& Room::join(Viewer& viewer, Role role, const std::string& name, const std::string& former,
                          Clock::time_point now) {
     const Person& who = people_.join(role, name, former, now);
     viewers_[&viewer].person = who.id;
-    json you = {
-        {"id", who.id}, {"name", who.name}, {"role", role_name(role)}, {"colour", who.colour}, {"secret", who.secret}};
-    viewer.send(typed_text("hello", {{"protocol", protocol_version}, {"you", you}, {"session", describe(role)}}));
+    const messages::You you{
+        .id = who.id, .name = who.name, .role = role_name(role), .colour = who.colour, .secret = who.secret};
+    viewer.send(bytes_of(messages::HelloMessage{.protocol = protocol_version, .you = you, .session = describe(role)}));
     for (const auto& messages : kept_) {
         for (const auto& [what, text] : messages) viewer.send(text);
     }
@@ -90,7 +92,7 @@ void Room::leave(Viewer& viewer, Clock::time_point now) {
 
 void Room::dismiss_all() {
     const auto viewers = std::exchange(viewers_, {});
-    for (const auto& [viewer, view] : viewers) viewer->dismiss(typed_text("ended", json::object()));
+    for (const auto& [viewer, view] : viewers) viewer->dismiss(bytes_of(messages::EndedMessage{}));
 }
 
 bool Room::receive(Viewer& viewer, std::string_view text, Clock::time_point now) {
@@ -190,7 +192,7 @@ void Room::tell(const Bytes& text) {
 }
 
 void Room::tell(const json& message) {
-    tell(std::make_shared<const std::string>(to_text(message)));
+    tell(bytes_of(message));
 }
 
 void Room::keep(Kept what, int scenario, const Bytes& text) {
@@ -199,7 +201,7 @@ void Room::keep(Kept what, int scenario, const Bytes& text) {
 }
 
 void Room::done(int scenario, const std::string& by, const std::string& sentence) {
-    tell(json{{"type", "done"}, {"scenario", Scenarios::name_of(scenario)}, {"by", by}, {"done", sentence}});
+    tell(messages::DoneMessage{.scenario = Scenarios::name_of(scenario), .by = by, .done = sentence});
 }
 
 void Room::scenarios(const std::vector<std::string>& names) {
@@ -209,7 +211,7 @@ void Room::scenarios(const std::vector<std::string>& names) {
         kept_[i].clear();
         newest_[i] = {};
     }
-    tell(json{{"type", "scenarios"}, {"scenarios", names}});
+    tell(messages::ScenariosMessage{.scenarios = names});
 }
 
 void Room::people_changed(Clock::time_point now) {
@@ -223,9 +225,7 @@ Clock::duration Room::people_interval() const {
 }
 
 void Room::tell_people(Clock::time_point now) {
-    json message = people_.to_json();
-    message["type"] = "people";
-    tell(message);
+    tell(people_.message());
     people_untold_ = false;
     people_told_ = now;
 }

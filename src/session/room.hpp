@@ -49,7 +49,7 @@ class Room {
         std::string id;       ///< of the session: pages that reconnect see whether it is still the same
         std::string program;  ///< its name and version
         std::string title;    ///< of the scene
-        std::function<nlohmann::json(Role)> links;            ///< that somebody with this role may pass on
+        std::function<messages::Session::Links(Role)> links;  ///< that somebody with this role may pass on
         std::function<void(std::vector<Audience>)> watching;  ///< told what people look at, whenever that changes
     };
     /// The time in which a list of people is sent once at most; with many of them less often.
@@ -75,7 +75,7 @@ class Room {
     void tick(Clock::time_point now);
 
     /// As `GET /api/session`.
-    [[nodiscard]] nlohmann::json describe(Role role) const;
+    [[nodiscard]] messages::Session describe(Role role) const;
 
     /// A message for everybody who is here.
     void tell(const Bytes& text);

@@ -29,7 +29,7 @@ Result<std::unique_ptr<Session>> Session::open(Setup setup) {
     TALUS_ASSIGN(room.id, random_token());
     room.program = std::move(setup.program);
     room.title = setup.scene->spec.scene.title;
-    room.links = [](Role) { return json::object(); };  // nobody can be led here
+    room.links = [](Role) { return messages::Session::Links{}; };  // nobody can be led here
     std::unique_ptr<Session> made(new Session());
     room.watching = [&session = *made](const std::vector<Audience>& audience) {
         session.scenarios_->set_audience(audience);

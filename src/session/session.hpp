@@ -63,7 +63,7 @@ class Session final : private Watcher {
     /// Of the first scenario's state now, as in its journal.
     [[nodiscard]] std::string hash() const { return to_hex(twin::version_of(scenarios_->at(0)).hash); }
     /// As `GET /api/session`.
-    [[nodiscard]] nlohmann::json describe(Role role) const { return room_->describe(role); }
+    [[nodiscard]] messages::Session describe(Role role) const { return room_->describe(role); }
 
     /// Does what is due, for about as long as `budget`, by the clock `now`. Returns when to call it again; empty: not
     /// before another call.

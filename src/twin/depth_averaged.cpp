@@ -49,21 +49,20 @@ Grid<float> known_only(Grid<float> depth) {
 
 }  // namespace
 
-json DepthAveragedRun::to_json() const {
+messages::DepthAveragedResult DepthAveragedRun::message() const {
     const std::vector<observe::FrontSample>& samples = result.observation.front;
-    const json front = {{"chainage_m", column_json(samples, &observe::FrontSample::chainage)},
-                        {"arrival_time_s", column_json(samples, &observe::FrontSample::arrival_time)},
-                        {"front_velocity_mps", column_json(samples, &observe::FrontSample::front_velocity)}};
-    return {{"end_s", result.simulated_time},
-            {"complete", result.status == run::RunStatus::complete},
-            {"stop_reason", result.stop_reason},
-            {"verdict", json(verdict_json(judge(result)))},
-            {"wall_time_s", result.wall_time},
-            {"processor_time_s", processor_time},
-            {"grid_cell_m", result.grid_cell},
-            {"hash", to_hex(result.hash)},
-            {"notes", notes},
-            {"front", front}};
+    return {.end_s = result.simulated_time,
+            .complete = result.status == run::RunStatus::complete,
+            .stop_reason = result.stop_reason,
+            .verdict = json(verdict_json(judge(result))),
+            .wall_time_s = result.wall_time,
+            .processor_time_s = processor_time,
+            .grid_cell_m = result.grid_cell,
+            .hash = to_hex(result.hash),
+            .notes = notes,
+            .front = {.chainage_m = column(samples, &observe::FrontSample::chainage),
+                      .arrival_time_s = column(samples, &observe::FrontSample::arrival_time),
+                      .front_velocity_mps = column(samples, &observe::FrontSample::front_velocity)}};
 }
 
 Result<Grid<float>> DepthAveragedRun::layer(const std::string& name, std::optional<double> time) const {

@@ -8,10 +8,9 @@
 #include <string>
 #include <vector>
 
-#include <nlohmann/json.hpp>
-
 #include "core/grid.hpp"
 #include "core/result.hpp"
+#include "messages/messages.hpp"
 #include "run/run_result.hpp"
 #include "scene/scene.hpp"
 
@@ -41,8 +40,7 @@ struct DepthAveragedRun {
     std::vector<std::string> notes;  ///< sentences on what the model leaves out
     double processor_time = 0;       ///< s
 
-    /// As "result" of docs/protocol.md.
-    [[nodiscard]] nlohmann::json to_json() const;
+    [[nodiscard]] messages::DepthAveragedResult message() const;
     /// `depth`, `peak_depth`, `peak_speed`, `peak_pressure`, `arrival_time`, `deposit_depth` on its own cells; NaN: no
     /// value. SI units. Depth at a time, s, or at the end; arrivals until a time; the others are of the whole run.
     /// Error: no such layer.

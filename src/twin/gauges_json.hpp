@@ -11,7 +11,16 @@
 
 namespace talus::twin {
 
-/// A value of every row; null where there is none.
+/// A value of every row.
+template <class Row>
+[[nodiscard]] std::vector<double> column(const std::vector<Row>& rows, double Row::*value) {
+    std::vector<double> values;
+    values.reserve(rows.size());
+    for (const Row& row : rows) values.push_back(row.*value);
+    return values;
+}
+
+/// The same; null where there is none.
 template <class Row>
 [[nodiscard]] nlohmann::json column_json(const std::vector<Row>& rows, double Row::*value) {
     nlohmann::json values = nlohmann::json::array();

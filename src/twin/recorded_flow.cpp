@@ -131,27 +131,28 @@ std::string RecordedFlow::why_none(const Format& format, const std::vector<Frame
     return "";
 }
 
-json RecordedFlow::describe(double interval) const {
+messages::FlowOffer RecordedFlow::describe(double interval) const {
     const std::vector<FramePtr> frames = chosen(interval);
     const Sizes sizes = sizes_of(frames, result_.observation.maps.peak_depth);
-    json offered = json::array();
+    std::vector<messages::FlowFormatOffer> offered;
+    offered.reserve(formats().size());
     for (const Format& format : formats()) {
         const bool drawn = format.name == "gltf" || format.name == "3dtiles";
-        const std::string refused = why_none(format, frames);
         const std::size_t most = products::DebrisSurface::max_frames;
-        offered.push_back({{"name", format.name},
-                           {"what", format.what},
-                           {"files", format.files},
-                           {"frames", drawn ? std::min(frames.size(), most) : frames.size()},
-                           {"bytes", static_cast<std::int64_t>(drawn ? sizes.drawn : sizes.maps)},
-                           {"refused", refused.empty() ? json() : json(refused)}});
+        offered.push_back({.name = std::string(format.name),
+                           .what = std::string(format.what),
+                           .files = {format.files.begin(), format.files.end()},
+                           .frames = drawn ? std::min(frames.size(), most) : frames.size(),
+                           .bytes = static_cast<std::int64_t>(drawn ? sizes.drawn : sizes.maps),
+                           .refused = messages::if_any(why_none(format, frames))});
     }
-    return {{"from_s", frames.front()->time},
-            {"to_s", frames.back()->time},
-            {"frames", frames.size()},
-            {"interval_s", std::max(interval, recorded_interval_)},
-            {"shortest_interval_s", recorded_interval_},
-            {"formats", std::move(offered)}};
+    return {.scenario = {},
+            .from_s = frames.front()->time,
+            .to_s = frames.back()->time,
+            .frames = frames.size(),
+            .interval_s = std::max(interval, recorded_interval_),
+            .shortest_interval_s = recorded_interval_,
+            .formats = std::move(offered)};
 }
 
 Status RecordedFlow::check(const std::vector<std::string>& names, double interval) const {

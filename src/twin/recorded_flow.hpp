@@ -7,10 +7,9 @@
 #include <string_view>
 #include <vector>
 
-#include <nlohmann/json.hpp>
-
 #include "core/grid.hpp"
 #include "core/result.hpp"
+#include "messages/messages.hpp"
 #include "run/run_result.hpp"
 #include "scene/scene.hpp"
 #include "twin/frame.hpp"
@@ -38,9 +37,9 @@ class RecordedFlow {
     RecordedFlow(scene::Scene scene, run::RunResult result, std::vector<FramePtr> frames, const GridGeometry& map,
                  double thinnest_depth, double recorded_interval);
 
-    /// What there would be at an interval, s: FlowOffer of docs/protocol.md, without its scenario. An interval that is
-    /// shorter than the recording's gives all that is recorded.
-    [[nodiscard]] nlohmann::json describe(double interval) const;
+    /// What there would be at an interval, s; the scenario's name is left empty. An interval that is shorter than the
+    /// recording's gives all that is recorded.
+    [[nodiscard]] messages::FlowOffer describe(double interval) const;
     [[nodiscard]] double default_interval() const { return scene_.spec.outputs.series_interval; }
 
     /// Whether these formats can be written at an interval. Errors: none or an unknown one, one that this run cannot

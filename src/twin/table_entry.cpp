@@ -220,33 +220,36 @@ Status check_table_entry(const TableEntry& entry, TableKind kind, const std::vec
     return check_in_scene(entry, kind, setup, scene);
 }
 
-json table_sections_json() {
-    json list = json::array();
+std::vector<messages::TableSection> table_sections_json() {
+    std::vector<messages::TableSection> list;
     for (const TableKind kind : {TableKind::observation, TableKind::trigger, TableKind::alarm}) {
         for (const std::string& name : sections_of(kind)) {
             const params::Section& section = *params::find_section(name);
-            json keys = json::array(), choices = json::array();
+            std::vector<messages::TableKey> keys;
+            std::vector<std::vector<std::string>> choices;
+            keys.reserve(section.parameters.size());
+            choices.reserve(section.alternatives.size());
             for (const params::Parameter& parameter : section.parameters) {
                 const bool number = parameter.kind == params::ParameterKind::number;
                 const bool text = parameter.kind == params::ParameterKind::text;
-                keys.push_back({{"key", parameter.key},
-                                {"label", label_of(parameter)},
-                                {"unit", parameter.unit},
-                                {"is", number ? "number"
-                                       : text ? "text"
-                                              : "boolean"},
-                                {"required", parameter.required},
-                                {"default", entry_value_json(default_value(section, parameter))},
-                                {"absent", parameter.absent},
-                                {"allowed", number ? parameter.range.text() : ""},
-                                {"help", parameter.help}});
+                keys.push_back({.key = parameter.key,
+                                .label = label_of(parameter),
+                                .unit = parameter.unit,
+                                .is = number ? "number"
+                                      : text ? "text"
+                                             : "boolean",
+                                .required = parameter.required,
+                                .default_ = entry_value_json(default_value(section, parameter)),
+                                .absent = parameter.absent,
+                                .allowed = number ? parameter.range.text() : "",
+                                .help = parameter.help});
             }
             for (const params::Alternatives& choice : section.alternatives) choices.push_back(choice.keys);
-            list.push_back({{"section", name},
-                            {"kind", kind_name(kind)},
-                            {"help", section.help},
-                            {"keys", std::move(keys)},
-                            {"one_of", std::move(choices)}});
+            list.push_back({.section = name,
+                            .kind = kind_name(kind),
+                            .help = section.help,
+                            .keys = std::move(keys),
+                            .one_of = std::move(choices)});
         }
     }
     return list;

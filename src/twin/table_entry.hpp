@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/result.hpp"
+#include "messages/messages.hpp"
 #include "params/fields.hpp"
 #include "params/spec.hpp"
 #include "scene/scene.hpp"
@@ -58,6 +59,6 @@ void put_entries(params::SceneSpec& spec, TableKind kind, const std::vector<Tabl
                                        const Setup& setup, const scene::Scene& scene, double particle_spacing);
 
 /// What a form needs to know of each section: `TableSection[]` of docs/protocol.md.
-[[nodiscard]] nlohmann::json table_sections_json();
+[[nodiscard]] std::vector<messages::TableSection> table_sections_json();
 
 }  // namespace talus::twin

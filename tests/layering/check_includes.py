@@ -31,14 +31,15 @@ BELOW = {
     "risk": ["core", "params", "terrain", "simd", "sim", "depth", "geo", "observe", "scene", "run", "report", "products", "stats", "ensemble"],
     "validate": ["core", "params", "terrain", "simd", "sim", "depth", "geo", "observe", "scene", "run", "report", "products"],
     "bench": ["core", "params", "terrain", "simd", "sim", "depth", "geo", "observe", "scene", "run", "report", "products"],
-    "twin": ["core", "params", "terrain", "simd", "sim", "depth", "geo", "observe", "scene", "run", "report", "products"],
+    "messages": [],
+    "twin": ["core", "params", "terrain", "simd", "sim", "depth", "geo", "observe", "scene", "run", "report", "products", "messages"],
     "session": ["core", "params", "terrain", "simd", "sim", "depth", "geo", "observe", "scene", "run", "report", "products", "stats", "ensemble",
-                "twin"],
+                "messages", "twin"],
     "publish": ["core"],
     "serve": ["core", "params", "terrain", "simd", "sim", "depth", "geo", "observe", "scene", "run", "report", "products", "stats", "ensemble",
-              "calibrate", "design", "risk", "validate", "twin", "session", "publish", "pack"],
+              "calibrate", "design", "risk", "validate", "messages", "twin", "session", "publish", "pack"],
     "apps": ["core", "params", "terrain", "simd", "sim", "depth", "geo", "observe", "scene", "run", "report", "products", "stats", "ensemble",
-             "calibrate", "design", "risk", "validate", "bench", "twin", "session", "publish", "serve", "pack"],
+             "calibrate", "design", "risk", "validate", "bench", "messages", "twin", "session", "publish", "serve", "pack"],
 }
 INCLUDE = re.compile(r'^\s*#\s*include\s*([<"])([^>"]+)[>"]')
 NAMESPACE = re.compile(r"^namespace (talus\b[\w:]*) \{")
@@ -144,7 +145,7 @@ def self_test():
                 ("stats", "boost/asio.hpp"), ("serve", "gdal_priv.h"), ("scene", "bench/measure.hpp"), ("products", "twin/scenario.hpp"),
                 ("twin", "bench/measure.hpp"), ("sim", "depth/solver.hpp"), ("depth", "observe/observer.hpp"),
                 ("depth", "scene/scene.hpp"), ("twin", "session/room.hpp"), ("session", "serve/loop.hpp"),
-                ("session", "boost/asio.hpp"), ("session", "mutex"), ("session", "filesystem")]
+                ("session", "boost/asio.hpp"), ("session", "mutex"), ("session", "filesystem"), ("messages", "core/result.hpp")]
     accepted = [("params", "core/result.hpp"), ("sim", "sim/model.hpp"), ("sim", "terrain/terrain.hpp"),
                 ("geo", "gdal_priv.h"), ("geo", "proj.h"), ("scene", "geo/raster.hpp"), ("apps", "products/products.hpp"),
                 ("scene", "fmt/format.h"), ("core", "vector"), ("depth", "sim/physics/resistance.hpp"), ("run", "depth/solver.hpp"), ("apps", "progress.hpp"),

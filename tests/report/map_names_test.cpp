@@ -91,7 +91,7 @@ TEST(MapNames, the_lists_of_the_qgis_plugin_have_them) {
 TEST(MapNames, the_description_of_the_server_has_them) {
     std::string layers = "'depth'";
     for (const NamedMap& map : named_maps) layers += fmt::format(" | '{}'", map.key);
-    const std::string protocol = source("src/serve/protocol.json");
+    const std::string protocol = source("src/messages/protocol.json");
     EXPECT_THAT(protocol, HasSubstr("\"is\": \"" + layers + " | 'pore_pressure_ratio' | 'erosion_depth'\""));
     EXPECT_THAT(protocol, HasSubstr("\"is\": \"" + layers + "\"")) << "of the depth-averaged model";
     const std::string exports = source("src/serve/exports.cpp");

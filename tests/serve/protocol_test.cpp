@@ -44,6 +44,11 @@ TEST(Protocol, the_committed_types_of_the_page_are_those_of_the_description) {
     }
 }
 
+TEST(Protocol, the_committed_messages_of_the_program_are_those_of_the_description) {
+    expect_committed("src/messages/messages.hpp", protocol_header(serve::protocol()));
+    expect_committed("src/messages/messages.cpp", protocol_writers(serve::protocol()));
+}
+
 TEST(Protocol, the_committed_tables_are_those_of_the_description) {
     const std::string page = "docs/protocol.md";
     const auto made = with_protocol_tables(serve::protocol(), read_file(std::string(TALUS_SOURCE_DIR) + "/" + page));

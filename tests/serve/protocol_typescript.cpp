@@ -134,7 +134,7 @@ std::string protocol_typescript(const Protocol& all, const std::string& group) {
         const TypeDescription* type = all.find(name);
         if (type != nullptr && type->group != group) others.insert(name);
     }
-    return "// Made from src/serve/protocol.json: edit that; docs/protocol.md tells how this is made again.\n" +
+    return "// Made from src/messages/protocol.json: edit that; docs/protocol.md tells how this is made again.\n" +
            import_of(others, "messages") + import_of(values, "schema") + text;
 }
 

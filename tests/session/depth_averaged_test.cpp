@@ -113,7 +113,7 @@ TEST(DepthAveragedResults, takes_no_result_that_nobody_asked_for) {
     DepthAveragedResults::Task task{0, 7, [] { return Result<scene::Scene>(Error{"lacks this"}); }};
     EXPECT_FALSE(results.wants(task));
     results.finish(task, {.refused = "lacks this"});
-    EXPECT_EQ(results.describe(0)["state"], "off") << "nobody asked";
+    EXPECT_EQ(results.describe(0).state, "off") << "nobody asked";
     EXPECT_THAT(results.why_none(0), HasSubstr("it is off"));
 }
 

@@ -16,10 +16,7 @@ class PeopleTest : public ::testing::Test {
         secrets[who.id] = who.secret;
         return who.id;
     }
-    [[nodiscard]] std::string holder() const {
-        const auto all = people.to_json();
-        return all["controller"].is_null() ? "" : all["controller"].get<std::string>();
-    }
+    [[nodiscard]] std::string holder() const { return people.message().controller.value_or(""); }
     Status control(const char* what, const std::string& id) { return people.control(what, id, now); }
     void pass(People::Time::duration time) {
         now += time;
@@ -50,12 +47,12 @@ TEST_F(PeopleTest, control_is_granted_or_declined) {
     EXPECT_FALSE(control("request", eye));
     EXPECT_FALSE(control("grant", ada));
     EXPECT_TRUE(control("request", bo));
-    EXPECT_EQ(people.to_json()["request"]["name"], "Bo");
+    EXPECT_EQ(people.message().request->name, "Bo");
     EXPECT_FALSE(control("request", cy));
     EXPECT_FALSE(control("grant", bo));
     EXPECT_TRUE(control("decline", ada));
     EXPECT_EQ(holder(), ada);
-    EXPECT_TRUE(people.to_json()["request"].is_null());
+    EXPECT_FALSE(people.message().request);
     EXPECT_TRUE(control("request", cy));
     EXPECT_TRUE(control("grant", ada));
     EXPECT_EQ(holder(), cy);
@@ -132,7 +129,7 @@ TEST_F(PeopleTest, a_secret_shows_who_is_who_and_an_id_does_not) {
     EXPECT_EQ(people.whose(ada), nullptr);
     EXPECT_EQ(people.whose(""), nullptr);
     EXPECT_NE(secrets[ada], secrets[bo]);
-    EXPECT_EQ(people.to_json().dump().find(secrets[ada]), std::string::npos);
+    EXPECT_EQ(nlohmann::json(people.message()).dump().find(secrets[ada]), std::string::npos);
     const std::string first = secrets[ada];
     people.leave(ada, now);
     EXPECT_EQ(people.whose(first), nullptr) << "nobody acts in the name of who has gone";
@@ -146,7 +143,7 @@ TEST_F(PeopleTest, a_request_ends_with_who_made_it) {
     const std::string ada = join(Role::controller, "Ada"), bo = join(Role::controller, "Bo");
     ASSERT_TRUE(control("request", bo));
     people.leave(bo, now);
-    EXPECT_TRUE(people.to_json()["request"].is_null());
+    EXPECT_FALSE(people.message().request);
     pass(seconds(20));
     EXPECT_EQ(holder(), ada);
 }
@@ -162,7 +159,7 @@ TEST_F(PeopleTest, names_are_tidied_and_colours_differ) {
     EXPECT_EQ(people.find(longer)->name.size(), 40U);
     EXPECT_NE(people.find(ada)->colour, people.find(none)->colour);
     people.set_mark(ada, std::array<double, 3>{1, 2, 3});
-    EXPECT_EQ(people.to_json()["people"][0]["mark"], (nlohmann::json{1.0, 2.0, 3.0}));
+    EXPECT_EQ(people.message().people[0].mark, (std::array<double, 3>{1, 2, 3}));
 }
 
 }  // namespace

@@ -49,7 +49,7 @@ TEST(DepthAveragedBeside, is_the_run_of_the_present_setup_to_the_bit) {
     EXPECT_EQ(after.result.hash, plain.hash);
     EXPECT_NE(after.result.hash, before.result.hash);
     EXPECT_GT(plain.observation.front.size(), 20U);
-    EXPECT_EQ(after.to_json()["front"]["chainage_m"].size(), plain.observation.front.size());
+    EXPECT_EQ(after.message().front.chainage_m.size(), plain.observation.front.size());
     const Grid<float> peak = *after.layer("peak_depth");
     ASSERT_EQ(peak.geometry, plain.observation.maps.peak_depth.geometry);
     for (std::size_t k = 0; k < peak.values.size(); ++k) {
@@ -166,7 +166,7 @@ TEST(DepthAveragedBeside, cost_is_bounded_and_said) {
     EXPECT_EQ(coarse->spec.solver.grid_cell, 2.0);
     EXPECT_THAT(text_of(coarse->notes), HasSubstr("cells of 2 m in place of 1 m"));
     const DepthAveragedRun brief = run_of(*scenario, {.longest = 0});
-    EXPECT_EQ(brief.to_json()["complete"], false);
+    EXPECT_FALSE(brief.message().complete);
     EXPECT_THAT(brief.result.stop_reason, HasSubstr("the most that it may take"));
     const DepthAveragedRun small = run_of(*scenario, {.depth_bytes = 20'000}), whole = run_of(*scenario);
     EXPECT_EQ(small.result.hash, whole.result.hash);

@@ -158,14 +158,14 @@ TEST(RecordedFlow, is_refused_with_the_reason) {
     EXPECT_THAT(recorded_flow_of(*live)->check({"gltf"}, 1).error().message, HasSubstr("nothing has moved yet"));
     run_until(*live, 1);
     const auto flow = recorded_flow_of(*live);
-    EXPECT_TRUE(flow->describe(1)["formats"][0]["refused"].is_null());
-    EXPECT_THAT(flow->describe(1)["formats"][1]["refused"], HasSubstr("local"));
+    EXPECT_FALSE(flow->describe(1).formats[0].refused);
+    EXPECT_THAT(flow->describe(1).formats[1].refused.value_or(""), HasSubstr("local"));
     EXPECT_THAT(flow->check({}, 1).error().message, HasSubstr("at least one"));
     EXPECT_THAT(flow->check({"gltf", "usd"}, 1).error().message, HasSubstr("gltf, 3dtiles, geotiff, netcdf"));
     EXPECT_THAT(flow->check({"gltf", "netcdf", "gltf"}, 1).error().message, HasSubstr("\"gltf\" is there twice"));
     EXPECT_EQ(flow->check(std::vector<std::string>(5, "gltf"), 1).error().message,
               "formats has 5 names; there are 4 formats");
-    EXPECT_LE(flow->describe(0.001)["frames"].get<int>(), 12) << "more than is recorded";
+    EXPECT_LE(flow->describe(0.001).frames.value, 12) << "more than is recorded";
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-// Made from src/serve/protocol.json: edit that; docs/protocol.md tells how this is made again.
+// Made from src/messages/protocol.json: edit that; docs/protocol.md tells how this is made again.
 import type { BarrierOpeningValues, BarrierValues, BedValues, BuildingsValues, HydrographValues, InflowValues, ReleaseValues, ZoneValues } from "./schema";
 
 /** Those that there can be at one time. */
@@ -98,7 +98,7 @@ export interface Session {
   /** Who asks for control. */
   request: ControlRequest | null;
   /** Tokens of the links to share, as far as the own token entitles to them. */
-  links: { viewer: string; controller?: string };
+  links: { viewer?: string; controller?: string };
 }
 
 /** Body of POST /api/control. */

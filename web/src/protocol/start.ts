@@ -1,4 +1,4 @@
-// Made from src/serve/protocol.json: edit that; docs/protocol.md tells how this is made again.
+// Made from src/messages/protocol.json: edit that; docs/protocol.md tells how this is made again.
 import type { Journal, Parameter, Point, Role, SavedOverlay, SavedTiles, VariedKey } from "./messages";
 
 /** A scene that can be opened. */

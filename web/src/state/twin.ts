@@ -55,7 +55,7 @@ export class Twin {
   readonly people = new Cell<Person[]>([]);
   readonly controller = new Cell<string | null>(null);
   readonly request = new Cell<{ id: string; name: string } | null>(null);
-  readonly links = new Cell<Partial<Session["links"]>>({});
+  readonly links = new Cell<Session["links"]>({});
   readonly scenarios = new Cell<ScenarioName[]>(["A"]);
   /** One, or two side by side, in the order of their names. */
   readonly shown = new Cell<ScenarioName[]>(["A"]);
