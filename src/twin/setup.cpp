@@ -177,9 +177,9 @@ double value_in_force(const params::MaterialSpec& material, const params::Parame
     const params::ParameterValue value = parameter.get(spec, 0);
     if (const double* number = std::get_if<double>(&value)) return *number;
     if (parameter.key == "laminar_viscosity_m2ps") return params::laminar_viscosity_of(material);
-    if (parameter.key == "turbulent_friction_mps2") return std::numeric_limits<double>::quiet_NaN();
     if (parameter.key == "internal_friction_coefficient") return params::internal_friction_of(material);
-    return material.friction_coefficient;  // that of buildings follows it
+    if (parameter.key == "building_friction_coefficient") return material.friction_coefficient;
+    return std::numeric_limits<double>::quiet_NaN();
 }
 
 }  // namespace talus::twin
