@@ -146,11 +146,11 @@ TEST(PlacedGauges, of_the_scene_are_renamed_moved_and_removed_and_come_back_with
     former["next"].erase("gauge");
     const auto read = read_journal(former.dump());
     ASSERT_TRUE(read) << read.error().message;
-    const auto opened = Scenario::open_at(*read, std::make_shared<const scene::Scene>(scene), {});
+    const auto opened = replay(*read, std::make_shared<const scene::Scene>(scene));
     ASSERT_TRUE(opened) << opened.error().message;
-    EXPECT_EQ(setup_json(**opened)["gauges"].size(), 2U);
-    act(**opened, gauge("bridge"));
-    EXPECT_EQ(setup_json(**opened)["gauges"][2]["id"], "gauge-3");
+    EXPECT_EQ(setup_json(*opened->scenario)["gauges"].size(), 2U);
+    act(*opened->scenario, gauge("bridge"));
+    EXPECT_EQ(setup_json(*opened->scenario)["gauges"][2]["id"], "gauge-3");
 }
 
 TEST(PlacedGauges, beside_terrain_or_path_or_of_a_name_that_is_there_are_refused) {

@@ -209,11 +209,11 @@ TEST(Inflow, over_an_area_with_a_density_runs_live_and_again_after_a_restart) {
         EXPECT_NEAR(series["pressure_kPa"][k], 1200 * speed * speed / 1e3, 1e-4 * (1 + speed * speed));
     }
     EXPECT_TRUE(any);
-    const std::uint64_t hash = hash(*scenario);
+    const std::uint64_t before = hash(*scenario);
     const std::uint64_t step = scenario->step();
     act(*scenario, {{"action", "restart"}});
     while (scenario->step() < step) scenario->advance();
-    EXPECT_EQ(hash(*scenario), hash);
+    EXPECT_EQ(hash(*scenario), before);
 }
 
 TEST(Inflow, runs_live_and_again_after_a_restart) {
@@ -226,11 +226,11 @@ TEST(Inflow, runs_live_and_again_after_a_restart) {
     const double volume = number(*scenario, "volume_released_m3");
     EXPECT_NEAR(volume, 36, 3);
     expect_balance(*scenario);
-    const std::uint64_t hash = hash(*scenario);
+    const std::uint64_t before = hash(*scenario);
     const std::uint64_t step = scenario->step();
     act(*scenario, {{"action", "restart"}});
     while (scenario->step() < step) scenario->advance();
-    EXPECT_EQ(hash(*scenario), hash);
+    EXPECT_EQ(hash(*scenario), before);
 }
 
 }  // namespace

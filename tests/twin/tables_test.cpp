@@ -108,11 +108,11 @@ TEST(Observations, are_in_the_journal_and_a_replay_has_the_same_hash_and_the_sam
     for (const char* number : {"observation", "trigger", "alarm"}) former["next"].erase(number);
     const auto read = read_journal(former.dump());
     ASSERT_TRUE(read) << read.error().message;
-    const auto opened = Scenario::open_at(*read, std::make_shared<const scene::Scene>(scene), {});
+    const auto opened = replay(*read, std::make_shared<const scene::Scene>(scene));
     ASSERT_TRUE(opened) << opened.error().message;
-    EXPECT_EQ(setup_json(**opened)["observations"].size(), 1U);
-    act(**opened, put_observed("arrival", {{"chainage_m", 50}, {"time_s", 8}}));
-    EXPECT_EQ(setup_json(**opened)["observations"][1]["id"], "observation-2");
+    EXPECT_EQ(setup_json(*opened->scenario)["observations"].size(), 1U);
+    act(*opened->scenario, put_observed("arrival", {{"chainage_m", 50}, {"time_s", 8}}));
+    EXPECT_EQ(setup_json(*opened->scenario)["observations"][1]["id"], "observation-2");
 }
 
 TEST(Observations, are_refused_as_the_reader_of_a_scene_file_refuses_them) {
@@ -215,16 +215,15 @@ TEST(PlacedAlarms, two_of_one_id_in_a_saved_setup_are_both_watched) {
         alarm.structure = "House 38";
         alarm.distance = 1000;
     }
-    const auto shared = std::make_shared<const scene::Scene>(scene);
     json written = journal_json(*open(scene));
     written["first_setup"]["alarms"][1]["id"] = written["first_setup"]["alarms"][0]["id"];
     const auto journal = read_journal(written.dump());
     ASSERT_TRUE(journal) << journal.error().message;
-    const auto opened = Scenario::open_at(*journal, shared, {});
+    const auto opened = replay(*journal, std::make_shared<const scene::Scene>(scene));
     ASSERT_TRUE(opened) << opened.error().message;
-    act(**opened, put_entry("trigger", {{"name", "slope"}, {"release", "scar"}}));  // rules are taken again
-    run_until(**opened, 3);
-    EXPECT_EQ((*opened)->run().alarms().size(), 2U);
+    act(*opened->scenario, put_entry("trigger", {{"name", "slope"}, {"release", "scar"}}));  // rules are taken again
+    run_until(*opened->scenario, 3);
+    EXPECT_EQ(opened->scenario->run().alarms().size(), 2U);
 }
 
 TEST(PlacedTriggers, start_a_run_of_the_scene_with_their_limits) {
