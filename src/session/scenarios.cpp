@@ -5,6 +5,7 @@
 #include <optional>
 #include <utility>
 
+#include "messages/messages.hpp"
 #include "twin/answers.hpp"
 #include "twin/live_run.hpp"
 #include "twin/trigger.hpp"
@@ -98,7 +99,8 @@ json Scenarios::state(int index) const {
     state["real_time_factor"] = steps ? slot.rate.real_time_factor() : 0.0;
     state["steps_per_second"] = steps ? slot.rate.steps_per_second() : 0.0;
     if (slot.ready()) state["status"] = slot.running ? "running" : "paused";
-    state["preparing"] = slot.job ? json{{"what", slot.job->what}, {"share", slot.job->share.load()}} : json();
+    state["preparing"] =
+        slot.job ? json(messages::Preparation{.what = slot.job->what, .share = slot.job->share.load()}) : json();
     return state;
 }
 

@@ -34,13 +34,6 @@ observe::Observation until(observe::Observation whole, double time) {
     return whole;
 }
 
-json agreement_json(const run::AreaAgreement& area) {
-    return {{"both_m2", area.both},
-            {"particles_only_m2", area.only_first},
-            {"depth_averaged_only_m2", area.only_second},
-            {"intersection_over_union", number_or_null<json>(area.intersection_over_union())}};
-}
-
 /// The rows of a comparison.
 class Rows {
   public:
@@ -48,29 +41,32 @@ class Rows {
         : particles_(particles), then_(then), whole_(whole) {}
 
     template <class Value>
-    json& add(const std::string& key, const std::string& name, const char* unit, int decimals, const Value& value) {
+    messages::DepthAveragedRow& add(const std::string& key, const std::string& name, const char* unit, int decimals,
+                                    const Value& value) {
         return add(key, name, unit, decimals, value(particles_), value(then_), value(whole_));
     }
-    json& add(const std::string& key, const std::string& name, const char* unit, int decimals, double particles,
-              double then, double whole) {
-        rows_.push_back({{"key", key},
-                         {"name", name},
-                         {"unit", unit},
-                         {"decimals", decimals},
-                         {"particles", number_or_null<json>(particles)},
-                         {"depth_averaged_by_then", number_or_null<json>(then)},
-                         {"depth_averaged", number_or_null<json>(whole)},
-                         {"observed", nullptr}});
+    messages::DepthAveragedRow& add(const std::string& key, const std::string& name, const char* unit, int decimals,
+                                    double particles, double then, double whole) {
+        rows_.push_back({.key = key,
+                         .name = name,
+                         .unit = unit,
+                         .decimals = decimals,
+                         .particles = particles,
+                         .depth_averaged_by_then = then,
+                         .depth_averaged = whole,
+                         .observed = {}});
         return rows_.back();
     }
-    [[nodiscard]] json take() { return std::move(rows_); }
+    [[nodiscard]] std::vector<messages::DepthAveragedRow> take() { return std::move(rows_); }
 
   private:
     const observe::Observation &particles_, &then_, &whole_;
-    json rows_ = json::array();
+    std::vector<messages::DepthAveragedRow> rows_;
 };
 
-json compared(const scene::Scene& scene, const run::RunResult& particles, const run::RunResult& whole, bool over) {
+messages::DepthAveragedComparison compared(const scene::Scene& scene, const run::RunResult& particles,
+                                           const run::RunResult& whole, bool over,
+                                           const std::vector<std::string>& differs) {
     run::RunResult then = whole;
     if (!over) then.observation = until(std::move(then.observation), particles.simulated_time);
     const run::AreaAgreement now = second_opinion(scene, particles, then).area;
@@ -87,7 +83,8 @@ json compared(const scene::Scene& scene, const run::RunResult& particles, const 
         const std::string at = fmt::format(" at {} m", report::plain(observed.chainage));
         if (once(observed.quantity() + at)) {
             rows.add(observed.key(), observed.quantity() + at, "m/s", 1,
-                     [&](const auto& o) { return computed_for(observed, o); })["observed"] = observed.value();
+                     [&](const auto& o) { return computed_for(observed, o); })
+                .observed = observed.value();
         }
         if (once("Front arrival" + at)) {
             rows.add("front_arrival", "Front arrival" + at, "s", 1,
@@ -108,11 +105,15 @@ json compared(const scene::Scene& scene, const run::RunResult& particles, const 
         rows.add(std::string(map.key), map.title, map.unit, map.decimals, peak.value(seen),
                  over ? value : observe::never, value);
     }
-    return {{"time_s", particles.simulated_time},
-            {"over", over},
-            {"rows", rows.take()},
-            {"least_depth_m", scene.spec.outputs.arrival_depth},
-            {"area", agreement_json(now)}};
+    return {.time_s = particles.simulated_time,
+            .over = over,
+            .rows = rows.take(),
+            .least_depth_m = scene.spec.outputs.arrival_depth,
+            .area = {.both_m2 = now.both,
+                     .particles_only_m2 = now.only_first,
+                     .depth_averaged_only_m2 = now.only_second,
+                     .intersection_over_union = now.intersection_over_union()},
+            .differs = differs};
 }
 
 }  // namespace
@@ -169,11 +170,7 @@ std::function<json()> comparison_with(const Scenario& scenario, std::shared_ptr<
             "restart.");
     }
     return [scene = scenario.parts().scene, particles = std::move(particles), other = std::move(other), over,
-            differs = std::move(differs)] {
-        json all = compared(*scene, particles, other->result, over);
-        all["differs"] = differs;
-        return all;
-    };
+            differs = std::move(differs)] { return compared(*scene, particles, other->result, over, differs); };
 }
 
 }  // namespace talus::twin

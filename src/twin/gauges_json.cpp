@@ -5,14 +5,12 @@
 #include <cstddef>
 #include <utility>
 
-#include "core/number_or_null.hpp"
 #include "twin/answers.hpp"
 #include "twin/live_run.hpp"
 
 namespace talus::twin {
 namespace {
 
-using nlohmann::json;
 using observe::GaugeRecord;
 using observe::GaugeSample;
 
@@ -38,17 +36,17 @@ observe::FlowAt flow_at(const GaugeRecord& record, double time) {
     return {(after - 1)->depth, (after - 1)->speed};
 }
 
-json reading_json(const GaugeRecord& record, const observe::FlowAt& now) {
-    return {{"name", record.gauge.name},
-            {"arrival_s", number_or_null<json>(record.arrival_time)},
-            {"depth_m", now.depth},
-            {"speed_mps", now.speed},
-            {"peak_depth_m", record.peak_depth},
-            {"peak_speed_mps", record.peak_speed}};
+messages::GaugeReading reading_of(const GaugeRecord& record, const observe::FlowAt& now) {
+    return {.name = record.gauge.name,
+            .arrival_s = record.arrival_time,
+            .depth_m = now.depth,
+            .speed_mps = now.speed,
+            .peak_depth_m = record.peak_depth,
+            .peak_speed_mps = record.peak_speed};
 }
 
 /// As of a time, from the rows until then. A short rest of an interval says nothing about the discharge.
-json section_json(const observe::DischargeRecord& record, double until) {
+messages::SectionReading reading_of(const observe::DischargeRecord& record, double until) {
     double discharge = 0, peak = 0, passed = 0, before = 0;
     for (const observe::DischargeSample& row : record.rows) {
         if (row.time > until) break;
@@ -59,64 +57,59 @@ json section_json(const observe::DischargeRecord& record, double until) {
         }
         before = row.time;
     }
-    return {{"name", record.section.name},
-            {"discharge_m3ps", discharge},
-            {"peak_discharge_m3ps", peak},
-            {"passed_m3", passed}};
+    return {.name = record.section.name, .discharge_m3ps = discharge, .peak_discharge_m3ps = peak, .passed_m3 = passed};
 }
 
 }  // namespace
 
-json gauge_place(const terrain::Gauge& gauge) {
-    return {{"name", gauge.name},
-            {"x_m", gauge.at.x},
-            {"y_m", gauge.at.y},
-            {"chainage_m", number_or_null<json>(gauge.chainage)}};
+messages::GaugePlace gauge_place(const terrain::Gauge& gauge) {
+    return {.name = gauge.name, .x_m = gauge.at.x, .y_m = gauge.at.y, .chainage_m = gauge.chainage};
 }
 
-json gauge_places(const std::vector<terrain::Gauge>& gauges) {
-    json places = json::array();
+std::vector<messages::GaugePlace> gauge_places(const std::vector<terrain::Gauge>& gauges) {
+    std::vector<messages::GaugePlace> places;
+    places.reserve(gauges.size());
     for (const terrain::Gauge& gauge : gauges) places.push_back(gauge_place(gauge));
     return places;
 }
 
-json section_places(const std::vector<terrain::CrossSection>& sections) {
-    json places = json::array();
+std::vector<messages::SectionPlace> section_places(const std::vector<terrain::CrossSection>& sections) {
+    std::vector<messages::SectionPlace> places;
+    places.reserve(sections.size());
     for (const terrain::CrossSection& section : sections) {
-        json line = json::array();
-        for (const PlanPoint& p : section.line) line.push_back({p.x, p.y});
-        places.push_back({{"name", section.name}, {"line", std::move(line)}});
+        places.push_back({.name = section.name, .line = {}});
+        for (const PlanPoint& p : section.line) places.back().line.push_back({p.x, p.y});
     }
     return places;
 }
 
-json gauge_curves(const std::vector<GaugeRecord>& records) {
-    json times = json::array(), depths = json::array();
-    if (records.empty()) return {{"time_s", times}, {"depth_m", depths}};
+messages::GaugeSeries gauge_curves(const std::vector<GaugeRecord>& records) {
+    messages::GaugeSeries curves{.time_s = {}, .depth_m = {}};
+    if (records.empty()) return curves;
     // All gauges have the same rows. As many as a chart can show, however long the run is.
     constexpr std::size_t most = 600;
     const std::size_t count = records.front().rows.size(), every = std::max<std::size_t>(1, (count + most - 1) / most);
-    for (std::size_t k = 0; k < count; k += every) times.push_back(records.front().rows[k].time);
+    for (std::size_t k = 0; k < count; k += every) curves.time_s.push_back(records.front().rows[k].time);
     for (const GaugeRecord& record : records) {
-        json& column = depths.emplace_back(json::array());
+        std::vector<double>& column = curves.depth_m.emplace_back();
         for (std::size_t k = 0; k < count; k += every) column.push_back(record.rows[k].depth);
     }
-    return {{"time_s", times}, {"depth_m", depths}};
+    return curves;
 }
 
-json gauges_json(const Scenario& scenario, std::optional<double> time) {
+nlohmann::json gauges_json(const Scenario& scenario, std::optional<double> time) {
     const observe::Observer& observer = scenario.run().observer();
-    json readings = json::array(), sections = json::array();
+    messages::GaugeReadings all{.gauges = {}, .cross_sections = {}};
     // A time is told with four decimals: the row of the moment that was meant may lie just after it.
     const double now = scenario.run().summary().time, until = time.value_or(now) + 1e-4;
     for (const observe::DischargeRecord& record : observer.cross_sections(now)) {
-        sections.push_back(section_json(record, until));
+        all.cross_sections.push_back(reading_of(record, until));
     }
     for (const GaugeRecord& record : observer.gauges()) {
-        readings.push_back(time ? reading_json(record_until(record, until), flow_at(record, until))
-                                : reading_json(record, observer.maps().at(record.gauge.at)));
+        all.gauges.push_back(time ? reading_of(record_until(record, until), flow_at(record, until))
+                                  : reading_of(record, observer.maps().at(record.gauge.at)));
     }
-    return {{"gauges", readings}, {"cross_sections", sections}};
+    return all;
 }
 
 }  // namespace talus::twin

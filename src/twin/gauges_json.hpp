@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/number_or_null.hpp"
+#include "messages/messages.hpp"
 #include "observe/observation.hpp"
 #include "terrain/cross_section.hpp"
 #include "terrain/gauge.hpp"
@@ -29,12 +30,12 @@ template <class Row>
 }
 
 /// Name and place.
-[[nodiscard]] nlohmann::json gauge_place(const terrain::Gauge& gauge);
+[[nodiscard]] messages::GaugePlace gauge_place(const terrain::Gauge& gauge);
 /// `gauges` of GET /api/scene.
-[[nodiscard]] nlohmann::json gauge_places(const std::vector<terrain::Gauge>& gauges);
+[[nodiscard]] std::vector<messages::GaugePlace> gauge_places(const std::vector<terrain::Gauge>& gauges);
 /// `cross_sections` of GET /api/scene.
-[[nodiscard]] nlohmann::json section_places(const std::vector<terrain::CrossSection>& sections);
+[[nodiscard]] std::vector<messages::SectionPlace> section_places(const std::vector<terrain::CrossSection>& sections);
 /// `gauges` of GET /api/scenarios/{s}/series: at most 600 rows.
-[[nodiscard]] nlohmann::json gauge_curves(const std::vector<observe::GaugeRecord>& records);
+[[nodiscard]] messages::GaugeSeries gauge_curves(const std::vector<observe::GaugeRecord>& records);
 
 }  // namespace talus::twin

@@ -124,7 +124,8 @@ TEST(NumberNames, other_languages_call_them_by_their_keys) {
 }
 
 TEST(NumberNames, the_description_of_the_server_and_the_page_have_those_of_a_live_run) {
-    const std::string protocol = file_text("src/messages/protocol.json"), page = file_text("web/src/protocol/messages.ts");
+    const std::string protocol = file_text("src/messages/protocol.json"),
+                      page = file_text("web/src/protocol/messages.ts");
     for (const NamedNumber& number : {front_number, run_out_number}) {
         EXPECT_THAT(protocol, HasSubstr(fmt::format("'{}'", number.key)));
         EXPECT_THAT(page, HasSubstr(fmt::format("\"{}\"", number.key)));
