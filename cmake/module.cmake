@@ -6,11 +6,6 @@ target_include_directories(talus_options INTERFACE ${PROJECT_SOURCE_DIR}/src)
 set(talus_cxx_options -Wall -Wextra -Wpedantic -Wshadow -Wnon-virtual-dtor -ffp-contract=off -fno-math-errno
     -Wno-psabi  # vectors wider than the baseline's registers never cross an interface
     -Wno-restrict)  # g++ 12 warns of std::string concatenation wrongly (GCC bug 105651)
-if(NOT CMAKE_DISABLE_PRECOMPILE_HEADERS)
-  # It forgets that a precompiled header is the system's, and warns of std::string wrongly in the same way. A development
-  # build, which has none, keeps the warnings.
-  list(APPEND talus_cxx_options -Wno-array-bounds -Wno-stringop-overflow)
-endif()
 if(TALUS_WARNINGS_AS_ERRORS)
   list(APPEND talus_cxx_options -Werror)
 endif()
@@ -39,18 +34,6 @@ if(TALUS_SANITIZE)
   set(talus_disabled_instruction_sets "(HWY_SSSE3 | HWY_SSE4 | HWY_AVX3 | HWY_AVX3_DL)")
 endif()
 
-# Headers of other projects that most files read take two to three seconds of each: they are compiled once, for libraries and
-# programs, and once more with googletest's, without optimisation, for tests. A development build does without
-# (CMAKE_DISABLE_PRECOMPILE_HEADERS), so that each file names what it needs.
-set(talus_headers <algorithm> <array> <atomic> <chrono> <cmath> <condition_variable> <cstdint> <filesystem> <fstream> <functional>
-    <map> <memory> <mutex> <optional> <set> <string> <string_view> <thread> <variant> <vector> <fmt/format.h> <nlohmann/json.hpp>)
-function(talus_precompile name)
-  file(CONFIGURE OUTPUT headers_${name}.cpp CONTENT "")
-  add_library(talus_headers_${name} OBJECT ${CMAKE_CURRENT_BINARY_DIR}/headers_${name}.cpp)
-  target_link_libraries(talus_headers_${name} PRIVATE talus_options nlohmann_json::nlohmann_json)
-  target_precompile_headers(talus_headers_${name} PRIVATE ${talus_headers} ${ARGN})
-endfunction()
-
 # talus_module(NAME DEPENDS... ): the library talus_NAME from every .cpp below the current folder.
 # A module without a .cpp is an interface library.
 function(talus_module name)
@@ -62,7 +45,6 @@ function(talus_module name)
   if(sources)
     add_library(talus_${name} STATIC ${wanted} ${sources})
     target_link_libraries(talus_${name} PUBLIC talus_options ${ARGN})
-    target_precompile_headers(talus_${name} REUSE_FROM talus_headers_code)
   else()
     add_library(talus_${name} INTERFACE)
     target_link_libraries(talus_${name} INTERFACE talus_options ${ARGN})
@@ -106,7 +88,6 @@ function(talus_test name label)
     target_compile_options(test_${name} PRIVATE -O1)
   else()
     target_compile_options(test_${name} PRIVATE -O0)
-    target_precompile_headers(test_${name} REUSE_FROM talus_headers_tests)
   endif()
   gtest_discover_tests(test_${name} TEST_PREFIX ${name}. ${filter} PROPERTIES LABELS ${label} TIMEOUT 300
                        DISCOVERY_TIMEOUT 60)
