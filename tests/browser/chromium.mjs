@@ -3,8 +3,8 @@ import { existsSync, readFileSync, statSync } from "node:fs";
 import { createServer } from "node:http";
 import { extname, join } from "node:path";
 
-/** WebGL without a graphics card: SwiftShader has to be asked for. Smooth edges would take it twice as long. */
-export const softwareWebGL = ["--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--ignore-gpu-blocklist", "--webgl-msaa-sample-count=0"];
+/** WebGL without a graphics card: SwiftShader has to be asked for. Smooth edges would take it twice as long, and so would the page around the view. */
+export const softwareWebGL = ["--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--ignore-gpu-blocklist", "--webgl-msaa-sample-count=0", "--disable-gpu-compositing"];
 
 export function skip(test, reason) {
   console.log(`SKIPPED browser.${test}: ${reason}`);
