@@ -18,7 +18,7 @@ using serve::UnionDescription;
 using serve::Variant;
 using Kind = Type::Kind;
 
-constexpr std::string_view json = "nlohmann::json", server_messages = "ServerMessage";
+constexpr std::string_view any_json = "nlohmann::json", server_messages = "ServerMessage";
 /// These stay JSON: the first two are made by the modules that write results.json, the third is as somebody sent it.
 constexpr std::array<std::string_view, 3> as_they_came = {"Verdict", "Figure", "TriggerValues"};
 constexpr std::string_view made_from =
@@ -161,11 +161,11 @@ class Structs {
                 return "bool";
             case Kind::null:
             case Kind::object:
-                return std::string(json);
+                return std::string(any_json);
             case Kind::name: {
                 const TypeDescription* found = all_.find(type.name);
                 if (found != nullptr && found->is) return type_of(*found->is, key);
-                return found != nullptr && is_struct(*found) ? type.name : std::string(json);
+                return found != nullptr && is_struct(*found) ? type.name : std::string(any_json);
             }
             case Kind::list: {
                 const std::string item = type_of(type.parts.front(), key);
@@ -174,7 +174,7 @@ class Structs {
             case Kind::tuple: {
                 const bool numbers = std::all_of(type.parts.begin(), type.parts.end(),
                                                  [](const Type& part) { return part.kind == Kind::number; });
-                return numbers ? fmt::format("std::array<double, {}>", type.parts.size()) : std::string(json);
+                return numbers ? fmt::format("std::array<double, {}>", type.parts.size()) : std::string(any_json);
             }
             case Kind::record:
                 return fmt::format("std::map<std::string, {}>", type_of(type.parts[1], key));
@@ -189,7 +189,7 @@ class Structs {
         for (const Type& part : type.parts) {
             if (part.kind != Kind::null) types.insert(type_of(part, key));
         }
-        if (types.size() != 1 || *types.begin() == json) return std::string(json);
+        if (types.size() != 1 || *types.begin() == any_json) return std::string(any_json);
         return type.may_be_null() ? fmt::format("std::optional<{}>", *types.begin()) : *types.begin();
     }
 
