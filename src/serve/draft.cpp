@@ -14,7 +14,6 @@
 #include "scene/check.hpp"
 #include "scene/load.hpp"
 #include "serve/library.hpp"
-#include "session/json_text.hpp"
 
 namespace talus::serve {
 namespace {
