@@ -264,31 +264,6 @@ void to_json(json& to, const Done& from) {
     put(to, "created", from.created);
 }
 
-void to_json(json& to, const OverlayStyle& from) {
-    to = json::object();
-    put(to, "stroke", from.stroke);
-    put(to, "stroke_opacity", from.stroke_opacity);
-    put(to, "fill", from.fill);
-    put(to, "fill_opacity", from.fill_opacity);
-    put(to, "width_px", from.width_px);
-    put(to, "size_px", from.size_px);
-}
-
-void to_json(json& to, const OverlayFeature& from) {
-    to = json::object();
-    put(to, "kind", from.kind);
-    put(to, "parts", from.parts);
-    put(to, "name", from.name);
-    put(to, "attributes", from.attributes);
-    put(to, "style", from.style);
-}
-
-void to_json(json& to, const OverlayData& from) {
-    to = json::object();
-    put(to, "styles", from.styles);
-    put(to, "features", from.features);
-}
-
 void to_json(json& to, const Tiles& from) {
     to = json::object();
     put(to, "addresses", from.addresses);
@@ -498,97 +473,11 @@ void to_json(json& to, const RecordingExtent& from) {
     put(to, "bytes", from.bytes);
 }
 
-void to_json(json& to, const State& from) {
-    to = json::object();
-    put(to, "scenario", from.scenario);
-    put(to, "status", from.status);
-    put(to, "message", from.message);
-    put(to, "time_s", from.time_s);
-    put(to, "end_time_s", from.end_time_s);
-    put(to, "expected_end_s", from.expected_end_s);
-    put(to, "wall_remaining_s", from.wall_remaining_s);
-    put(to, "step", from.step);
-    put(to, "speed_factor", from.speed_factor);
-    put(to, "real_time_factor", from.real_time_factor);
-    put(to, "steps_per_second", from.steps_per_second);
-    put(to, "particles", from.particles);
-    put(to, "volume_released_m3", from.volume_released_m3);
-    put(to, "volume_entrained_m3", from.volume_entrained_m3);
-    put(to, "pore_pressure", from.pore_pressure);
-    put(to, "volume_held_m3", from.volume_held_m3);
-    put(to, "volume_moving_m3", from.volume_moving_m3);
-    put(to, "volume_deposited_m3", from.volume_deposited_m3);
-    put(to, "volume_left_m3", from.volume_left_m3);
-    put(to, "front_chainage_m", from.front_chainage_m);
-    put(to, "front_velocity_mps", from.front_velocity_mps);
-    put(to, "largest_speed_mps", from.largest_speed_mps);
-    put(to, "peak_speed_mps", from.peak_speed_mps);
-    put(to, "mean_compression", from.mean_compression);
-    put(to, "max_compression", from.max_compression);
-    put(to, "overcompressed_share", from.overcompressed_share);
-    put(to, "too_compressed", from.too_compressed);
-    put(to, "verdict", from.verdict);
-    put(to, "preparing", from.preparing);
-    put(to, "recording", from.recording);
-    put_if_there(to, "hash", from.hash);
-}
-
 void to_json(json& to, const ChangeOnTheWay& from) {
     to = json::object();
     put(to, "time_s", from.time_s);
     put(to, "by", from.by);
     put(to, "sentence", from.sentence);
-}
-
-void to_json(json& to, const Gauge& from) {
-    to = json::object();
-    put(to, "id", from.id);
-    put(to, "name", from.name);
-    put(to, "x_m", from.x_m);
-    put(to, "y_m", from.y_m);
-    put(to, "chainage_m", from.chainage_m);
-    put(to, "from_scene", from.from_scene);
-    put(to, "in_force", from.in_force);
-}
-
-void to_json(json& to, const Note& from) {
-    to = json::object();
-    put(to, "id", from.id);
-    put(to, "name", from.name);
-    put(to, "x_m", from.x_m);
-    put(to, "y_m", from.y_m);
-}
-
-void to_json(json& to, const TableEntry& from) {
-    to = json::object();
-    put(to, "id", from.id);
-    put(to, "section", from.section);
-    put(to, "name", from.name);
-    put(to, "values", from.values);
-    put(to, "from_scene", from.from_scene);
-}
-
-void to_json(json& to, const Setup& from) {
-    to = json::object();
-    put(to, "scenario", from.scenario);
-    put(to, "name", from.name);
-    put(to, "revision", from.revision);
-    put(to, "changes", from.changes);
-    put(to, "parameters", from.parameters);
-    put(to, "releases", from.releases);
-    put(to, "barriers", from.barriers);
-    put(to, "buildings", from.buildings);
-    put(to, "zones", from.zones);
-    put(to, "beds", from.beds);
-    put(to, "inflows", from.inflows);
-    put(to, "gauges", from.gauges);
-    put(to, "notes", from.notes);
-    put(to, "observations", from.observations);
-    put(to, "triggers", from.triggers);
-    put(to, "alarms", from.alarms);
-    put(to, "pending_restart", from.pending_restart);
-    put(to, "undo", from.undo);
-    put(to, "redo", from.redo);
 }
 
 void to_json(json& to, const Recording& from) {

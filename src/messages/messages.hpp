@@ -239,31 +239,6 @@ struct Done {
 };
 void to_json(nlohmann::json& to, const Done& from);
 
-struct OverlayStyle {
-    std::string stroke;
-    double stroke_opacity;
-    std::string fill;
-    double fill_opacity;
-    double width_px;
-    double size_px;
-};
-void to_json(nlohmann::json& to, const OverlayStyle& from);
-
-struct OverlayFeature {
-    std::string kind;
-    std::vector<std::vector<double>> parts;
-    std::string name;
-    std::map<std::string, nlohmann::json> attributes;
-    Integer style;
-};
-void to_json(nlohmann::json& to, const OverlayFeature& from);
-
-struct OverlayData {
-    std::vector<OverlayStyle> styles;
-    std::vector<OverlayFeature> features;
-};
-void to_json(nlohmann::json& to, const OverlayData& from);
-
 struct Tiles {
     std::vector<std::string> addresses;
     Integer steps;
@@ -473,98 +448,12 @@ struct RecordingExtent {
 };
 void to_json(nlohmann::json& to, const RecordingExtent& from);
 
-struct State {
-    std::string scenario;
-    std::string status;
-    std::string message;
-    double time_s;
-    double end_time_s;
-    std::optional<double> expected_end_s;
-    std::optional<double> wall_remaining_s;
-    Integer step;
-    std::optional<double> speed_factor;
-    double real_time_factor;
-    double steps_per_second;
-    Integer particles;
-    double volume_released_m3;
-    double volume_entrained_m3;
-    bool pore_pressure;
-    double volume_held_m3;
-    double volume_moving_m3;
-    double volume_deposited_m3;
-    double volume_left_m3;
-    std::optional<double> front_chainage_m;
-    std::optional<double> front_velocity_mps;
-    std::optional<double> largest_speed_mps;
-    std::optional<double> peak_speed_mps;
-    std::optional<double> mean_compression;
-    std::optional<double> max_compression;
-    std::optional<double> overcompressed_share;
-    std::optional<bool> too_compressed;
-    nlohmann::json verdict;
-    std::optional<Preparation> preparing;
-    RecordingExtent recording;
-    std::optional<std::string> hash{};
-};
-void to_json(nlohmann::json& to, const State& from);
-
 struct ChangeOnTheWay {
     double time_s;
     std::string by;
     std::string sentence;
 };
 void to_json(nlohmann::json& to, const ChangeOnTheWay& from);
-
-struct Gauge {
-    std::string id;
-    std::string name;
-    double x_m;
-    double y_m;
-    std::optional<double> chainage_m;
-    bool from_scene;
-    bool in_force;
-};
-void to_json(nlohmann::json& to, const Gauge& from);
-
-struct Note {
-    std::string id;
-    std::string name;
-    double x_m;
-    double y_m;
-};
-void to_json(nlohmann::json& to, const Note& from);
-
-struct TableEntry {
-    std::string id;
-    std::string section;
-    std::string name;
-    std::map<std::string, nlohmann::json> values;
-    bool from_scene;
-};
-void to_json(nlohmann::json& to, const TableEntry& from);
-
-struct Setup {
-    std::string scenario;
-    std::string name;
-    Integer revision;
-    std::vector<ChangeOnTheWay> changes;
-    std::map<std::string, std::optional<double>> parameters;
-    std::vector<nlohmann::json> releases;
-    std::vector<nlohmann::json> barriers;
-    std::vector<nlohmann::json> buildings;
-    std::vector<nlohmann::json> zones;
-    std::vector<nlohmann::json> beds;
-    std::vector<nlohmann::json> inflows;
-    std::vector<Gauge> gauges;
-    std::vector<Note> notes;
-    std::vector<TableEntry> observations;
-    std::vector<TableEntry> triggers;
-    std::vector<TableEntry> alarms;
-    bool pending_restart;
-    std::optional<std::string> undo;
-    std::optional<std::string> redo;
-};
-void to_json(nlohmann::json& to, const Setup& from);
 
 struct Recording {
     std::vector<double> times_s;

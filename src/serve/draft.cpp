@@ -1,6 +1,7 @@
 #include "serve/draft.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <system_error>
@@ -13,25 +14,23 @@
 #include "scene/check.hpp"
 #include "scene/load.hpp"
 #include "serve/library.hpp"
-#include "session/json_text.hpp"
 
 namespace talus::serve {
 namespace {
 
-using nlohmann::json;
 namespace fs = std::filesystem;
 
 constexpr int most_scenes_of_a_name = 1000;
 
 /// Lowest and highest, m, by which a person sees whether feet were taken for metres.
-json elevation_range(const Grid<float>& grid) {
+std::optional<std::array<double, 2>> elevation_range(const Grid<float>& grid) {
     double low = std::numeric_limits<double>::infinity(), high = -low;
     for (const float value : grid.values) {
         if (!std::isfinite(value)) continue;
         low = std::min(low, double{value});
         high = std::max(high, double{value});
     }
-    return low <= high ? json{low, high} : json();
+    return low <= high ? std::optional(std::array{low, high}) : std::nullopt;
 }
 
 }  // namespace
@@ -150,42 +149,43 @@ Status Draft::mend(const geo::Mending& mending) {
     return {};
 }
 
-json Draft::describe() const {
-    json files = json::object();
+messages::Draft Draft::describe() const {
+    messages::Draft told{.files = {}, .terrain = {}, .bytes_left = bytes_left()};
     for (const auto& [role, upload] : uploads_) {
-        files[role] = {{"name", upload.name},
-                       {"bytes", upload.bytes},
-                       {"kind", upload.kind == geo::FileKind::raster   ? "raster"
-                                : upload.kind == geo::FileKind::vector ? "polygons"
-                                                                       : "other"}};
+        told.files.insert({role,
+                           {.name = upload.name,
+                            .bytes = upload.bytes,
+                            .kind = upload.kind == geo::FileKind::raster   ? "raster"
+                                    : upload.kind == geo::FileKind::vector ? "polygons"
+                                                                           : "other"}});
     }
-    json terrain;
-    if (find("terrain") != nullptr) {
-        const geo::RasterFacts facts = facts_.value_or(geo::RasterFacts{});
-        terrain = {{"problem", problem_.empty() ? json() : json(problem_)},
-                   {"columns", facts.columns},
-                   {"rows", facts.rows},
-                   {"crs", facts.crs},
-                   {"metric_crs", facts.metric_crs},
-                   {"value_unit", facts.value_unit},
-                   {"height_unit_m", facts.height_unit},
-                   {"mending",
-                    {{"epsg", mending_.epsg == 0 ? json() : json(mending_.epsg)},
-                     {"local", mending_.local},
-                     {"metric", mending_.metric},
-                     {"metres_per_unit", mending_.metres_per_unit ? json(*mending_.metres_per_unit) : json()},
-                     {"nodata", mending_.nodata ? json(*mending_.nodata) : json()}}}};
-        if (terrain_) {
-            const GridGeometry& g = terrain_->grid.geometry;
-            terrain["cell_m"] = g.cell;
-            terrain["columns"] = g.columns;
-            terrain["rows"] = g.rows;
-            terrain["crs"] = terrain_->crs.label();
-            terrain["nodata_share"] = terrain_->nodata_share;
-            terrain["elevation_m"] = elevation_range(terrain_->grid);
-        }
+    if (find("terrain") == nullptr) return told;
+    const geo::RasterFacts facts = facts_.value_or(geo::RasterFacts{});
+    std::optional<messages::Integer> epsg;
+    if (mending_.epsg != 0) epsg = mending_.epsg;
+    messages::DraftTerrain terrain{.problem = messages::if_any(problem_),
+                                   .columns = facts.columns,
+                                   .rows = facts.rows,
+                                   .crs = facts.crs,
+                                   .metric_crs = facts.metric_crs,
+                                   .value_unit = facts.value_unit,
+                                   .height_unit_m = facts.height_unit,
+                                   .mending = {.epsg = epsg,
+                                               .local = mending_.local,
+                                               .metric = mending_.metric,
+                                               .metres_per_unit = mending_.metres_per_unit,
+                                               .nodata = mending_.nodata}};
+    if (terrain_) {
+        const GridGeometry& g = terrain_->grid.geometry;
+        terrain.cell_m = g.cell;
+        terrain.columns = g.columns;
+        terrain.rows = g.rows;
+        terrain.crs = terrain_->crs.label();
+        terrain.nodata_share = terrain_->nodata_share;
+        terrain.elevation_m.emplace(elevation_range(terrain_->grid));
     }
-    return {{"files", files}, {"terrain", terrain}, {"bytes_left", bytes_left()}};
+    told.terrain = std::move(terrain);
+    return told;
 }
 
 std::string Draft::plain(std::string message) const {

@@ -9,14 +9,13 @@
 #include <string_view>
 #include <vector>
 
-#include <nlohmann/json.hpp>
-
 #include "core/grid.hpp"
 #include "core/result.hpp"
 #include "geo/foreign.hpp"
 #include "geo/raster.hpp"
 #include "geo/repair_raster.hpp"
 #include "geo/zip_archive.hpp"
+#include "messages/messages.hpp"
 #include "scene/new_scene.hpp"
 
 namespace talus::serve {
@@ -59,7 +58,7 @@ class Draft {
     /// nothing changes.
     [[nodiscard]] Status mend(const geo::Mending& mending);
     /// What there is, and what is wrong with the terrain.
-    [[nodiscard]] nlohmann::json describe() const;
+    [[nodiscard]] messages::Draft describe() const;
     /// The terrain, if it can be one.
     [[nodiscard]] const Grid<float>* terrain() const { return terrain_ ? &terrain_->grid : nullptr; }
 

@@ -12,6 +12,7 @@
 #include <fmt/format.h>
 
 #include "core/try.hpp"
+#include "messages/messages.hpp"
 #include "scene/builtin.hpp"
 #include "scene/bundle.hpp"
 #include "serve/access.hpp"
@@ -223,7 +224,7 @@ void Drafts::begin(const Respond& respond) {
         if (!made) return respond(error_response(500, made.error().message));
         draft_ = std::make_unique<Draft>(std::move(*made));
         id_ = std::move(*id);
-        respond(json_response(200, {{"done", "a new scene is begun"}, {"created", id_}}));
+        respond(json_response(200, messages::Done{.done = "a new scene is begun", .created = id_}));
     });
 }
 
@@ -238,7 +239,7 @@ void Drafts::discard(const std::string& id, const Respond& respond) {
     lane_.post([this, id, respond] {
         if (find(id, respond) == nullptr) return;
         draft_.reset();
-        respond(json_response(200, {{"done", "discarded"}, {"created", nullptr}}));
+        respond(json_response(200, messages::Done{.done = "discarded", .created = {}}));
     });
 }
 
@@ -293,12 +294,12 @@ void Drafts::make(const Request& request, const Respond& respond) {
             const auto found = draft->check(wanted);
             if (!found) return respond(problem(found.error().message));
             return respond(
-                json_response(200, {{"summary", found->summary}, {"notes", found->notes}, {"created", nullptr}}));
+                json_response(200, messages::Checked{.summary = found->summary, .notes = found->notes, .created = {}}));
         }
         const auto scene = draft->finish(wanted, Library(library_).scenes_folder());
         if (!scene) return respond(problem(scene.error().message));
         draft_.reset();
-        respond(json_response(200, {{"summary", ""}, {"notes", json::array()}, {"created", Library::id_of(*scene)}}));
+        respond(json_response(200, messages::Checked{.summary = "", .notes = {}, .created = Library::id_of(*scene)}));
     });
 }
 

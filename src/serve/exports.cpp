@@ -10,6 +10,7 @@
 #include "core/try.hpp"
 #include "geo/longitude_latitude.hpp"
 #include "geo/vector.hpp"
+#include "messages/messages.hpp"
 #include "products/page_files.hpp"
 #include "products/text_file.hpp"
 #include "scene/bundle.hpp"
@@ -24,7 +25,6 @@ namespace talus::serve {
 namespace {
 
 namespace fs = std::filesystem;
-using nlohmann::json;
 
 /// What a run must have for a file to be written.
 enum class Needs { nothing, erosion, gauges, globe, source };
@@ -191,17 +191,18 @@ void Exports::list(const std::string& scenario, const Respond& respond) {
         const bool current = is_current(*index, all.at(*index));
         writer_.post([taken = current ? taken_[static_cast<std::size_t>(*index)] : nullptr,
                       present = files_of(all.at(*index), source_), twin = twin_ != nullptr, respond] {
-            json files = json::array();
-            if (twin) files.push_back({{"name", twin_html}, {"bytes", nullptr}, {"what", twin_what}});
+            messages::ExportFiles told{.files = {}};
+            if (twin) told.files.push_back({.name = twin_html, .bytes = {}, .what = twin_what});
             const bool written = taken && !taken->products;
             for (const ExportFile* file : present) {
                 std::error_code error;
                 const bool known = written && file->needs != Needs::source;  // that is written when it is asked for
                 const auto bytes = known ? fs::file_size(taken->folder / file->name, error) : 0;
                 if (error) continue;  // this run has none
-                files.push_back({{"name", file->name}, {"bytes", known ? json(bytes) : json()}, {"what", file->what}});
+                told.files.push_back({.name = file->name, .bytes = {}, .what = file->what});
+                if (known) told.files.back().bytes = bytes;
             }
-            respond(json_response(200, {{"files", files}}));
+            respond(json_response(200, told));
         });
     });
 }

@@ -69,8 +69,8 @@ void FlowExports::offer(const std::string& scenario, std::optional<double> inter
         const auto index = all.find(scenario);
         if (!index) return respond(no_scenario(scenario));
         session_.worker().post([scenario, interval, respond, flow = twin::recorded_flow_of(all.at(*index))] {
-            json offered = flow->describe(interval.value_or(flow->default_interval()));
-            offered["scenario"] = scenario;
+            messages::FlowOffer offered = flow->describe(interval.value_or(flow->default_interval()));
+            offered.scenario = scenario;
             respond(json_response(200, offered));
         });
     });
@@ -152,23 +152,22 @@ void FlowExports::end(Job::State state, std::string message) {
     job_.files.clear();
 }
 
-json FlowExports::describe_now() const {
-    json files = json::array();
-    if (job_.state == Job::State::done) {
-        for (const std::string& name : job_.files) {
-            std::error_code gone;
-            const auto bytes = fs::file_size(job_.folder / name, gone);
-            if (!gone) files.push_back({{"name", name}, {"bytes", bytes}});
-        }
+messages::FlowExport FlowExports::describe_now() const {
+    messages::FlowExport told{.state = job_.state_name(),
+                              .scenario = messages::if_any(job_.scenario),
+                              .share = job_.is_open() ? std::optional(job_.share) : std::nullopt,
+                              .message = job_.message,
+                              .files = {}};
+    if (job_.state != Job::State::done) return told;
+    for (const std::string& name : job_.files) {
+        std::error_code gone;
+        const auto bytes = fs::file_size(job_.folder / name, gone);
+        if (!gone) told.files.push_back({.name = name, .bytes = bytes});
     }
-    return {{"state", job_.state_name()},
-            {"scenario", job_.scenario.empty() ? json() : json(job_.scenario)},
-            {"share", job_.is_open() ? json(job_.share) : json()},
-            {"message", job_.message},
-            {"files", std::move(files)}};
+    return told;
 }
 
-json FlowExports::describe() const {
+messages::FlowExport FlowExports::describe() const {
     const std::lock_guard lock(mutex_);
     return describe_now();
 }

@@ -8,8 +8,7 @@
 #include <string>
 #include <vector>
 
-#include <nlohmann/json.hpp>
-
+#include "messages/messages.hpp"
 #include "serve/executor.hpp"
 #include "serve/sent_files.hpp"
 #include "serve/session.hpp"
@@ -36,7 +35,7 @@ class FlowExports {
     /// Begins one. `body`: WantedFlow of docs/protocol.md.
     void start(const std::string& scenario, const std::string& body, const Respond& respond);
     /// As `GET /api/flow`.
-    [[nodiscard]] nlohmann::json describe() const;
+    [[nodiscard]] messages::FlowExport describe() const;
     /// Ends the one that is being made, or deletes the files of the last one.
     void cancel();
     /// Answers with a file of the last one. Errors: none of that name.
@@ -57,7 +56,7 @@ class FlowExports {
     [[nodiscard]] Response begin(const std::string& scenario, const std::shared_ptr<const twin::RecordedFlow>& flow,
                                  const Wanted& wanted);
     void write(const twin::RecordedFlow& flow, const Wanted& wanted, const Job& job);
-    [[nodiscard]] nlohmann::json describe_now() const;
+    [[nodiscard]] messages::FlowExport describe_now() const;
     void end(Job::State state, std::string message);
 
     Session& session_;

@@ -7,23 +7,23 @@
 
 #include <fmt/format.h>
 
-#include "core/number_or_null.hpp"
 #include "core/temporary_folder.hpp"
 #include "core/try.hpp"
 #include "design/design.hpp"
 #include "ensemble/predict.hpp"
+#include "messages/messages.hpp"
 #include "params/fields.hpp"
 #include "risk/study.hpp"
 #include "run/cost.hpp"
 #include "scene/builtin.hpp"
 #include "scene/particle_spacing.hpp"
+#include "twin/answers.hpp"
 #include "twin/setup.hpp"
 #include "validate/suite.hpp"
 
 namespace talus::serve {
 namespace {
 
-using nlohmann::json;
 namespace fs = std::filesystem;
 
 /// A scene as a command loads it, and where from.
@@ -45,38 +45,27 @@ Result<std::unique_ptr<Loaded>> load(const KnownScene& known) {
     return Result<std::unique_ptr<Loaded>>(std::move(loaded));
 }
 
-json parameter_json(const params::Parameter& parameter, const std::string& key, const std::string& label,
-                    std::optional<double> value) {
-    const params::Range& range = parameter.range;
-    return {{"key", key},
-            {"label", label},
-            {"unit", parameter.unit},
-            {"default", value ? json(*value) : json()},
-            {"value", value ? json(*value) : json()},
-            {"range",
-             {{"low", number_or_null<json>(range.low)},
-              {"high", number_or_null<json>(range.high)},
-              {"low_included", range.low_included},
-              {"high_included", range.high_included}}},
-            {"help", parameter.help},
-            {"used_by_depth_averaged", parameter.use != params::KeyUse::particles}};
+/// With the value that the scene has.
+messages::Parameter parameter_of(const params::Parameter& parameter, std::string key, double value) {
+    messages::Parameter row = twin::described(parameter, std::move(key));
+    row.default_ = row.value = value;
+    return row;
 }
 
-void add_material(const params::SceneSpec& spec, json& list) {
+void add_material(const params::SceneSpec& spec, std::vector<messages::Parameter>& list) {
     for (const params::Parameter* parameter : twin::live_parameters()) {
-        const std::string key = "material." + parameter->key;
         // What the scene's model has no use for explains nothing.
         const bool for_particles = parameter->use == params::KeyUse::particles;
         if (spec.solver.model == params::ModelChoice::depth_averaged && for_particles) continue;
-        const double value = twin::value_in_force(spec.material, *parameter, 0);
-        list.push_back(parameter_json(*parameter, key, twin::label_of(*parameter),
-                                      std::isfinite(value) ? std::optional(value) : std::nullopt));
+        list.push_back(
+            parameter_of(*parameter, "material." + parameter->key, twin::value_in_force(spec.material, *parameter, 0)));
     }
 }
 
 template <class Spec>
-json names_of(const std::vector<Spec>& entries) {
-    json names = json::array();
+std::vector<std::string> names_of(const std::vector<Spec>& entries) {
+    std::vector<std::string> names;
+    names.reserve(entries.size());
     for (const Spec& entry : entries) names.push_back(entry.name);
     return names;
 }
@@ -103,8 +92,8 @@ Status check_design(const WantedJob& wanted, const Loaded& loaded) {
     return {};
 }
 
-json barriers_of(const scene::Scene& scene) {
-    json names = json::array();
+std::vector<std::string> barriers_of(const scene::Scene& scene) {
+    std::vector<std::string> names;
     for (const terrain::Building& building : scene.buildings) {
         if (building.barrier) names.push_back(building.name);
     }
@@ -112,64 +101,60 @@ json barriers_of(const scene::Scene& scene) {
 }
 
 /// Thickness or volume, whichever the scene gives.
-void add_releases(const params::SceneSpec& spec, json& list) {
+void add_releases(const params::SceneSpec& spec, std::vector<messages::Parameter>& list) {
     const params::Section& section = *params::find_section("release");
     for (std::size_t i = 0; i < spec.releases.size(); ++i) {
         const params::ReleaseSpec& release = spec.releases[i];
         const bool alone = spec.releases.size() == 1;
         for (const auto& [key, value] : {std::pair{"thickness_m", release.thickness}, {"volume_m3", release.volume}}) {
             if (!value) continue;
-            const params::Parameter& parameter = *section.find(key);
-            std::string label = "release " + twin::label_of(parameter);
-            if (!alone) label += " of " + (release.name.empty() ? fmt::format("{}", i + 1) : release.name);
-            list.push_back(parameter_json(
-                parameter, alone ? fmt::format("release.{}", key) : fmt::format("release[{}].{}", i, key), label,
-                value));
+            messages::Parameter& row = list.emplace_back(
+                parameter_of(*section.find(key),
+                             alone ? fmt::format("release.{}", key) : fmt::format("release[{}].{}", i, key), *value));
+            row.label = "release " + row.label;
+            if (!alone) row.label += " of " + (release.name.empty() ? fmt::format("{}", i + 1) : release.name);
         }
     }
 }
 
-json form_json(const scene::Scene& scene) {
-    json parameters = json::array(), observations = json::array();
-    add_material(scene.spec, parameters);
-    add_releases(scene.spec, parameters);
-    for (const ensemble::ObservedValue& observed : ensemble::observed_values(scene)) {
-        observations.push_back(observed.name);
-    }
-    return {{"title", scene.spec.scene.title},
-            {"parameters", parameters},
-            {"observations", observations},
-            {"events", names_of(scene.spec.risk_scenarios)},
-            {"options", names_of(scene.spec.options)},
-            {"barriers", barriers_of(scene)},
-            {"limits",
-             {{"runs", JobLimits::runs},
-              {"ensemble_factors", JobLimits::ensemble_factors},
-              {"calibration_factors", JobLimits::calibration_factors}}}};
+messages::JobForm form_of(const scene::Scene& scene) {
+    messages::JobForm form{.title = scene.spec.scene.title,
+                           .parameters = {},
+                           .observations = names_of(ensemble::observed_values(scene)),
+                           .events = names_of(scene.spec.risk_scenarios),
+                           .options = names_of(scene.spec.options),
+                           .barriers = barriers_of(scene),
+                           .limits = {.runs = JobLimits::runs,
+                                      .ensemble_factors = JobLimits::ensemble_factors,
+                                      .calibration_factors = JobLimits::calibration_factors}};
+    add_material(scene.spec, form.parameters);
+    add_releases(scene.spec, form.parameters);
+    return form;
 }
 
 /// Of one run on all cores: as many runs on one core each, side by side, take together not longer than one by one.
-json estimate_json(const scene::Scene& scene, const run::Rehearsal& rehearsal) {
+messages::JobEstimate estimate_of(const scene::Scene& scene, const run::Rehearsal& rehearsal) {
     const run::Cost cost = cost_of(scene, rehearsal, particle_spacing(scene));
-    return {{"run_s", number_or_null<json>(cost.seeding_time + cost.wall_time)},
-            {"particles", std::llround(cost.particles)},
-            {"memory_bytes", std::llround(cost.memory)},
-            {"cores", std::max(1U, std::thread::hardware_concurrency())}};
+    return {.run_s = cost.seeding_time + cost.wall_time,
+            .particles = std::llround(cost.particles),
+            .memory_bytes = std::llround(cost.memory),
+            .cores = std::max(1U, std::thread::hardware_concurrency())};
 }
 
-Result<json> cases_json() {
+Result<messages::ValidationCases> validation_cases() {
     const TemporaryFolder unpacked;
     if (unpacked.path().empty()) return Error{"cannot make a temporary folder; set TMPDIR"};
     TALUS_ASSIGN(const fs::path folder, validate::unpack_builtin_cases(unpacked.path()));
-    json list = json::array();
+    messages::ValidationCases all{.cases = {}};
     for (const std::string& name : validate::builtin_case_names()) {
         TALUS_ASSIGN(const validate::Case loaded, validate::load_case(folder / name));
-        list.push_back({{"name", name}, {"title", loaded.title}, {"quick", loaded.quick}});
+        all.cases.push_back({.name = name, .title = loaded.title, .quick = loaded.quick});
     }
-    return json{{"cases", list}};
+    return Result<messages::ValidationCases>(std::move(all));
 }
 
-Response of(const Result<json>& content, int refused) {
+template <class Message>
+Response of(const Result<Message>& content, int refused) {
     return content ? json_response(200, *content) : error_response(refused, content.error().message);
 }
 
@@ -190,13 +175,13 @@ void JobForms::describe(const KnownScene& scene, const Respond& respond) {
     lane_.post([scene, respond] {
         const auto loaded = load(scene);
         if (!loaded) return respond(error_response(409, loaded.error().message));
-        respond(json_response(200, form_json((*loaded)->scene)));
+        respond(json_response(200, form_of((*loaded)->scene)));
     });
 }
 
 void JobForms::estimate(const KnownScene& scene, const Respond& respond) {
     lane_.post([scene, respond, stop = begin_estimate()] {
-        const auto estimated = [&]() -> Result<json> {
+        const auto estimated = [&]() -> Result<messages::JobEstimate> {
             if (*stop) return Error{"another estimate was asked for"};
             TALUS_ASSIGN(const auto loaded, load(scene));
             if (loaded->scene.spec.solver.model != params::ModelChoice::particles) {
@@ -204,14 +189,14 @@ void JobForms::estimate(const KnownScene& scene, const Respond& respond) {
             }
             TALUS_ASSIGN(const auto rehearsal, run::rehearse(loaded->scene, particle_spacing(loaded->scene), *stop));
             if (*stop) return Error{"another estimate was asked for"};
-            return estimate_json(loaded->scene, rehearsal);
+            return estimate_of(loaded->scene, rehearsal);
         }();
         respond(of(estimated, 409));
     });
 }
 
 void JobForms::cases(const Respond& respond) {
-    lane_.post([respond] { respond(of(cases_json(), 500)); });
+    lane_.post([respond] { respond(of(validation_cases(), 500)); });
 }
 
 void JobForms::check(const WantedJob& wanted, const KnownScene& scene, const Respond& respond,

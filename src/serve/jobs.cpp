@@ -20,7 +20,6 @@
 namespace talus::serve {
 namespace {
 
-using nlohmann::json;
 namespace fs = std::filesystem;
 
 constexpr int job_niceness = 10;  // a tenth of the open session's share where cores are short
@@ -104,33 +103,34 @@ void Jobs::load() {
     }
 }
 
-json Jobs::describe() const {
-    if (program_.empty()) return nullptr;
+std::optional<std::vector<messages::Job>> Jobs::describe() const {
+    if (program_.empty()) return {};
     std::vector<EntryPtr> sorted;
     const std::lock_guard lock(mutex_);
     for (const auto& [id, entry] : entries_) sorted.push_back(entry);
     std::stable_sort(sorted.begin(), sorted.end(),
                      [](const EntryPtr& a, const EntryPtr& b) { return a->job.begun_at > b->job.begun_at; });
-    json list = json::array();
+    std::vector<messages::Job> list;
+    list.reserve(sorted.size());
     std::error_code error;
     for (const EntryPtr& entry : sorted) {
         const Job& job = entry->job;
         const fs::path folder = folder_ / job.id;
         const bool done = job.state == Job::State::done && fs::exists(folder / report_of(job.kind), error);
-        list.push_back({{"id", job.id},
-                        {"kind", job_kind_name(job.kind)},
-                        {"state", job.state_name()},
-                        {"title", job.title},
-                        {"message", job.message},
-                        {"begun_at", job.begun_at},
-                        {"ended_at", job.ended_at.empty() ? json() : json(job.ended_at)},
-                        {"done", job.done},
-                        {"failed", job.failed},
-                        {"count", job.count},
-                        {"wall_remaining_s", job.wall_remaining ? json(*job.wall_remaining) : json()},
-                        {"command", command_text(job.arguments)},
-                        {"folder", folder.string()},
-                        {"report", done ? json("api/reports/" + entry->ticket) : json()}});
+        list.push_back({.id = job.id,
+                        .kind = job_kind_name(job.kind),
+                        .state = job.state_name(),
+                        .title = job.title,
+                        .message = job.message,
+                        .begun_at = job.begun_at,
+                        .ended_at = messages::if_any(job.ended_at),
+                        .done = job.done,
+                        .failed = job.failed,
+                        .count = job.count,
+                        .wall_remaining_s = job.wall_remaining,
+                        .command = command_text(job.arguments),
+                        .folder = folder.string(),
+                        .report = done ? std::optional("api/reports/" + entry->ticket) : std::nullopt});
     }
     return list;
 }

@@ -9,9 +9,8 @@
 #include <string>
 #include <vector>
 
-#include <nlohmann/json.hpp>
-
 #include "core/result.hpp"
+#include "messages/messages.hpp"
 #include "serve/executor.hpp"
 #include "serve/job.hpp"
 #include "serve/library.hpp"
@@ -32,8 +31,8 @@ class Jobs {
     Jobs(const Jobs&) = delete;
     Jobs& operator=(const Jobs&) = delete;
 
-    /// As `jobs` of `GET /api/start`; null: there are none here.
-    [[nodiscard]] nlohmann::json describe() const;
+    /// As `jobs` of `GET /api/start`; nothing: there are none here.
+    [[nodiscard]] std::optional<std::vector<messages::Job>> describe() const;
     /// Puts one into the queue and returns its id. `scene`: unless it is a validation. Errors: too many wait or are
     /// kept, disk full.
     [[nodiscard]] Result<std::string> add(const WantedJob& wanted, const std::optional<KnownScene>& scene);

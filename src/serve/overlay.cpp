@@ -92,21 +92,28 @@ Result<Overlay> read_one(const json& written, const OverlayQuota& quota) {
 
 }  // namespace
 
-json to_json(const Overlay& overlay) {
-    const auto number = [&](double value) { return overlay.has_range ? json(value) : json(); };
-    return {
-        {"id", overlay.id},         {"name", overlay.name},         {"kind", overlay.picture ? "picture" : "vector"},
-        {"by", overlay.by},         {"visible", overlay.visible},   {"opacity", overlay.opacity},
-        {"colour", overlay.colour}, {"features", overlay.features}, {"outside", overlay.outside},
-        {"styled", overlay.styled}, {"low", number(overlay.low)},   {"high", number(overlay.high)},
-        {"note", overlay.note},     {"bytes", overlay.data->size()}};
+messages::Overlay message_of(const Overlay& overlay) {
+    const auto range = [&](double value) { return overlay.has_range ? std::optional(value) : std::nullopt; };
+    return {.id = overlay.id,
+            .name = overlay.name,
+            .kind = overlay.picture ? "picture" : "vector",
+            .by = overlay.by,
+            .visible = overlay.visible,
+            .opacity = overlay.opacity,
+            .colour = overlay.colour,
+            .features = overlay.features,
+            .outside = overlay.outside,
+            .styled = overlay.styled,
+            .low = range(overlay.low),
+            .high = range(overlay.high),
+            .note = overlay.note,
+            .bytes = overlay.data->size()};
 }
 
-json to_saved(const Overlay& overlay) {
-    json saved = to_json(overlay);
-    saved["type"] = overlay.type;
-    saved["data"] = overlay.picture ? to_base64(*overlay.data) : *overlay.data;
-    return saved;
+messages::SavedOverlay saved_of(const Overlay& overlay) {
+    return {.overlay = message_of(overlay),
+            .type = overlay.type,
+            .data = overlay.picture ? to_base64(*overlay.data) : *overlay.data};
 }
 
 Result<std::vector<Overlay>> read_saved_overlays(const json& written, const OverlayQuota& quota) {

@@ -7,6 +7,7 @@
 
 #include "core/result.hpp"
 #include "geo/overlay.hpp"
+#include "messages/messages.hpp"
 #include "serve/message.hpp"
 
 namespace talus::serve {
@@ -36,10 +37,10 @@ struct OverlayQuota {
 };
 
 /// As the page is told, without the data.
-[[nodiscard]] nlohmann::json to_json(const Overlay& overlay);
+[[nodiscard]] messages::Overlay message_of(const Overlay& overlay);
 
 /// With the data, for a saved session.
-[[nodiscard]] nlohmann::json to_saved(const Overlay& overlay);
+[[nodiscard]] messages::SavedOverlay saved_of(const Overlay& overlay);
 /// Of a saved session, which may come from anybody. Errors name the entry and what is wrong.
 [[nodiscard]] Result<std::vector<Overlay>> read_saved_overlays(const nlohmann::json& written,
                                                                const OverlayQuota& quota = {});

@@ -213,21 +213,20 @@ std::size_t Overlays::bytes() const {
     return sum;
 }
 
-json Overlays::describe() const {
-    json list = json::array();
-    for (const Overlay& overlay : list_) list.push_back(to_json(overlay));
-    json removed;
-    if (const auto* overlay = std::get_if<Overlay>(&removed_)) removed = overlay->name;
-    if (const auto* tile = std::get_if<TileAddress>(&removed_)) removed = host_of(tile->address);
-    return {{"overlays", std::move(list)},
-            {"removed", std::move(removed)},
-            {"tiles", tiles_.describe()},
-            {"bytes_left", quota_.bytes - std::min(quota_.bytes, bytes())}};
+messages::Overlays Overlays::describe() const {
+    messages::Overlays all{.overlays = {},
+                           .removed = {},
+                           .tiles = tiles_.describe(),
+                           .bytes_left = quota_.bytes - std::min(quota_.bytes, bytes())};
+    for (const Overlay& overlay : list_) all.overlays.push_back(message_of(overlay));
+    if (const auto* overlay = std::get_if<Overlay>(&removed_)) all.removed = overlay->name;
+    if (const auto* tile = std::get_if<TileAddress>(&removed_)) all.removed = host_of(tile->address);
+    return all;
 }
 
 json Overlays::saved() const {
     json list = json::array();
-    for (const Overlay& overlay : list_) list.push_back(to_saved(overlay));
+    for (const Overlay& overlay : list_) list.push_back(saved_of(overlay));
     json all{{"overlays", std::move(list)}};
     // Programs from before there were any read a session without them.
     if (json tiles = tiles_.saved(); !tiles.empty()) all["tiles"] = std::move(tiles);
@@ -271,9 +270,9 @@ void Overlays::add(std::vector<Overlay> overlays, const Respond& respond) {
         list_.insert(at, std::move(overlay));
     }
     tell();
-    respond(json_response(200, {{"done", count == 1 ? fmt::format("layer \"{}\" is added", first)
-                                                    : fmt::format("{} layers are added", count)},
-                                {"created", fmt::format("overlay-{}", numbers_)}}));
+    respond(json_response(200, messages::Done{.done = count == 1 ? fmt::format("layer \"{}\" is added", first)
+                                                                 : fmt::format("{} layers are added", count),
+                                              .created = fmt::format("overlay-{}", numbers_)}));
 }
 
 void Overlays::data(const Request& request, bool picture, const Respond& respond) const {
@@ -317,8 +316,8 @@ void Overlays::change(const Request& request, const Respond& respond) {
         }();
         if (!changed) return respond(error_response(400, changed.error().message));
         tell();
-        respond(json_response(200,
-                              {{"done", fmt::format("layer \"{}\" is changed", overlay->name)}, {"created", nullptr}}));
+        respond(json_response(
+            200, messages::Done{.done = fmt::format("layer \"{}\" is changed", overlay->name), .created = {}}));
     });
 }
 
@@ -331,7 +330,8 @@ void Overlays::remove(const Request& request, const Respond& respond) {
         removed_ = std::move(*overlay);
         list_.erase(overlay);
         tell();
-        respond(json_response(200, {{"done", fmt::format("layer \"{}\" is removed", name)}, {"created", nullptr}}));
+        respond(
+            json_response(200, messages::Done{.done = fmt::format("layer \"{}\" is removed", name), .created = {}}));
     });
 }
 

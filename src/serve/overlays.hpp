@@ -33,7 +33,7 @@ class Overlays {
     void open(std::vector<Overlay> overlays, const std::vector<TileAddress>& tiles = {});
     [[nodiscard]] const OverlayQuota& quota() const { return quota_; }
     /// As `GET /api/overlays`.
-    [[nodiscard]] nlohmann::json describe() const;
+    [[nodiscard]] messages::Overlays describe() const;
     /// For a saved session: its keys overlays and tiles.
     [[nodiscard]] nlohmann::json saved() const;
     /// A file that comes piece by piece, of which overlays are made.

@@ -5,6 +5,7 @@
 
 #include "core/try.hpp"
 #include "geo/longitude_latitude.hpp"
+#include "messages/messages.hpp"
 #include "serve/api.hpp"
 #include "serve/overlays.hpp"
 #include "session/json_text.hpp"
@@ -31,9 +32,8 @@ Result<std::string> wanted_address(const std::string& body) {
 
 void Overlays::tiles(const Respond& respond) const {
     const scene::Scene& scene = *session_.scene();
-    json places = json::array();
-    const std::vector<std::string> addresses = tiles_.addresses();
-    if (!addresses.empty()) {
+    messages::Tiles told{.addresses = tiles_.addresses(), .steps = grid_steps, .degrees = {}};
+    if (!told.addresses.empty()) {
         const auto to_degrees = geo::to_wgs84(scene.crs);
         if (!to_degrees) return respond(error_response(409, to_degrees.error().message));
         const Extent extent = scene.terrain.elevation().geometry.extent();
@@ -41,12 +41,11 @@ void Overlays::tiles(const Respond& respond) const {
             for (int i = 0; i <= grid_steps; ++i) {
                 const PlanPoint at = (*to_degrees)(
                     {extent.x_min + i * extent.width() / grid_steps, extent.y_min + j * extent.height() / grid_steps});
-                places.push_back(at.x);
-                places.push_back(at.y);
+                told.degrees.insert(told.degrees.end(), {at.x, at.y});
             }
         }
     }
-    respond(json_response(200, {{"addresses", addresses}, {"steps", grid_steps}, {"degrees", std::move(places)}}));
+    respond(json_response(200, told));
 }
 
 void Overlays::lay_tiles(const TileAddress& tile, const Respond& respond) {
@@ -55,9 +54,9 @@ void Overlays::lay_tiles(const TileAddress& tile, const Respond& respond) {
     const auto* removed = std::get_if<TileAddress>(&removed_);
     if (removed != nullptr && removed->address == tile.address) removed_ = {};  // it is back
     tell();
-    respond(
-        json_response(200, {{"done", fmt::format("the map of {} can be chosen as background", host_of(tile.address))},
-                            {"created", added->id}}));
+    respond(json_response(
+        200, messages::Done{.done = fmt::format("the map of {} can be chosen as background", host_of(tile.address)),
+                            .created = added->id}));
 }
 
 void Overlays::add_tiles(const Request& request, const Respond& respond) {
@@ -79,7 +78,8 @@ void Overlays::remove_tiles(const Request& request, const Respond& respond) {
         const std::string host = host_of(removed->address);
         removed_ = std::move(*removed);
         tell();
-        respond(json_response(200, {{"done", fmt::format("the map of {} is removed", host)}, {"created", nullptr}}));
+        respond(
+            json_response(200, messages::Done{.done = fmt::format("the map of {} is removed", host), .created = {}}));
     });
 }
 

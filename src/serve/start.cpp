@@ -104,9 +104,8 @@ void Start::describe(Role role, const Respond& respond) {
         for (const KnownScene& scene : library_.scenes()) scenes.push_back(message_of(scene));
         auto& sessions = page.sessions.emplace();
         for (const SavedSession& saved : library_.sessions()) sessions.push_back(message_of(saved));
-        json answer = page;
-        answer["jobs"] = jobs_->describe();
-        respond(json_response(200, answer));
+        page.jobs.emplace(jobs_->describe());
+        respond(json_response(200, page));
     });
 }
 

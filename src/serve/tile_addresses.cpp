@@ -175,10 +175,10 @@ std::vector<std::string> TileAddresses::addresses() const {
     return all;
 }
 
-json TileAddresses::describe() const {
-    json list = json::array();
-    for (const TileAddress& tile : list_)
-        list.push_back(messages::TileAddress{.id = tile.id, .address = tile.address, .by = tile.by});
+std::vector<messages::TileAddress> TileAddresses::describe() const {
+    std::vector<messages::TileAddress> list;
+    list.reserve(list_.size());
+    for (const TileAddress& tile : list_) list.push_back({.id = tile.id, .address = tile.address, .by = tile.by});
     return list;
 }
 

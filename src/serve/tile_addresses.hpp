@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/result.hpp"
+#include "messages/messages.hpp"
 
 namespace talus::serve {
 
@@ -48,7 +49,7 @@ class TileAddresses {
 
     [[nodiscard]] std::vector<std::string> addresses() const;
     /// For the page.
-    [[nodiscard]] nlohmann::json describe() const;
+    [[nodiscard]] std::vector<messages::TileAddress> describe() const;
     /// For a saved session: those that people added.
     [[nodiscard]] nlohmann::json saved() const;
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
+#include <map>
 #include <memory>
 #include <utility>
 
@@ -41,27 +42,9 @@ const char* phase_name(run::RunPhase phase) {
     return "";
 }
 
-json range_json(const params::Range& range) {
-    return {{"low", number_or_null<json>(range.low)},
-            {"high", number_or_null<json>(range.high)},
-            {"low_included", range.low_included},
-            {"high_included", range.high_included}};
-}
-
-/// The range of a value in this scene, regardless of the other values.
-params::Range range_in(const scene::Scene& scene, const params::Parameter& parameter) {
-    params::Range range = parameter.range;
-    const double highest = std::floor(1e4 * scene::highest_viscosity(scene.spec.solver)) / 1e4;
-    if (parameter.key == "viscosity" && highest < range.high) {
-        range.high = highest;
-        range.high_included = true;
-    }
-    return range;
-}
-
 /// Keys of the scene that others need, with their values.
-json settings_json(const scene::Scene& scene) {
-    json settings = json::object();
+std::map<std::string, std::string> settings_of(const scene::Scene& scene) {
+    std::map<std::string, std::string> settings;
     for (const params::Section& section : params::live_sections()) {
         for (const params::Parameter& parameter : section.parameters) {
             if (parameter.live.empty() || !parameter.need) continue;
@@ -74,41 +57,43 @@ json settings_json(const scene::Scene& scene) {
     return settings;
 }
 
-json live_parameters_json(const scene::Scene& scene, const sim::Model& model, const params::MaterialSpec& now) {
-    json list = json::array();
+std::vector<messages::Parameter> parameters_of(const scene::Scene& scene, const sim::Model& model,
+                                               const params::MaterialSpec& now) {
+    std::vector<messages::Parameter> list;
+    list.reserve(live_parameters().size());
+    // A scene that gives the kinematic viscosity also determines this one, at its spacing.
+    const double scene_viscosity =
+        scene.spec.material.kinematic_viscosity && now.kinematic_viscosity ? model.viscosity : 0;
+    // In this scene, regardless of the other values.
+    const double highest = std::floor(1e4 * scene::highest_viscosity(scene.spec.solver)) / 1e4;
     for (const params::Parameter* parameter : live_parameters()) {
-        // A scene that gives the kinematic viscosity also determines this one, at its spacing.
-        const double scene_viscosity =
-            scene.spec.material.kinematic_viscosity && now.kinematic_viscosity ? model.viscosity : 0;
-        list.push_back(
-            {{"key", "material." + parameter->key},
-             {"label", label_of(*parameter)},
-             {"unit", parameter->unit},
-             {"default", number_or_null<json>(value_in_force(scene.spec.material, *parameter, scene_viscosity))},
-             {"range", range_json(range_in(scene, *parameter))},
-             {"help", parameter->help},
-             {"used_by_depth_averaged", parameter->use != params::KeyUse::particles},
-             {"value", number_or_null<json>(value_in_force(now, *parameter, model.viscosity))}});
+        messages::Parameter& row = list.emplace_back(described(*parameter, "material." + parameter->key));
+        row.default_ = value_in_force(scene.spec.material, *parameter, scene_viscosity);
+        row.value = value_in_force(now, *parameter, model.viscosity);
+        if (parameter->key == "viscosity" && highest < parameter->range.high) {
+            row.range.high = highest;
+            row.range.high_included = true;
+        }
     }
     return list;
 }
 
-json flow_path_json(const scene::Scene& scene) {
+std::optional<messages::FlowPath> flow_path_of(const scene::Scene& scene) {
     const terrain::FlowPath& path = scene.flow_path;
-    if (path.empty()) return nullptr;
-    json points = json::array(), chainages = json::array();
+    if (path.empty()) return {};
+    messages::FlowPath told{.points = {},
+                            .chainage_m = {},
+                            .corridor_width_m = path.corridor_width(),
+                            .traced = scene.flow_path_origin != scene::PathOrigin::file};
     double chainage = 0;
     const PlanPoint* before = nullptr;
     for (const PlanPoint& p : path.points()) {
         if (before != nullptr) chainage += std::hypot(p.x - before->x, p.y - before->y);
-        points.push_back({p.x, p.y, number_or_null<json>(scene.terrain.elevation_at(p))});
-        chainages.push_back(chainage);
+        told.points.push_back({p.x, p.y, scene.terrain.elevation_at(p)});
+        told.chainage_m.push_back(chainage);
         before = &p;
     }
-    return {{"points", points},
-            {"chainage_m", chainages},
-            {"corridor_width_m", path.corridor_width()},
-            {"traced", scene.flow_path_origin != scene::PathOrigin::file}};
+    return told;
 }
 
 std::pair<float, float> elevation_range(const terrain::Terrain& terrain) {
@@ -120,18 +105,21 @@ std::pair<float, float> elevation_range(const terrain::Terrain& terrain) {
     return {lowest, highest};
 }
 
-/// With every number that comes from a single-precision one as short as it is read back to that: 4.77, not
-/// 4.769999980926514. For what is measured; values that somebody gave stay as they are.
+/// A number that comes from a single-precision one as short as it is read back to that: 4.77, not 4.769999980926514.
+double short_number(double value) {
+    const auto single = static_cast<float>(value);
+    if (static_cast<double>(single) != value) return value;
+    constexpr std::size_t noticeably = 4;  // digits; a coordinate such as 824347.8125 is left alone
+    const std::string text = fmt::format("{}", single);
+    return text.size() + noticeably <= fmt::format("{}", value).size() ? std::strtod(text.c_str(), nullptr) : value;
+}
+
+/// For what is measured; values that somebody gave stay as they are.
 json with_short_numbers(json measured) {
     if (measured.is_structured()) {
         for (json& child : measured) child = with_short_numbers(std::move(child));
     } else if (measured.is_number_float()) {
-        const auto value = measured.get<double>();
-        const auto single = static_cast<float>(value);
-        if (static_cast<double>(single) != value) return measured;
-        constexpr std::size_t noticeably = 4;  // digits; a coordinate such as 824347.8125 is left alone
-        const std::string text = fmt::format("{}", single);
-        if (text.size() + noticeably <= fmt::format("{}", value).size()) measured = std::strtod(text.c_str(), nullptr);
+        measured = short_number(measured.get<double>());
     }
     return measured;
 }
@@ -140,47 +128,78 @@ const report::IntensityGuideline& guideline_of(const scene::Scene& scene) {
     return report::intensity_guideline(scene.spec.outputs.intensity_guideline);
 }
 
-/// The scene's guideline, as GET /api/scene has it.
-json intensity_json(const report::IntensityGuideline& guideline) {
-    json classes = json::array();
+messages::IntensityGuideline intensity_of(const report::IntensityGuideline& guideline) {
+    std::vector<messages::IntensityClass> classes;
+    classes.reserve(guideline.classes.size());
     for (const report::IntensityClass& c : guideline.classes) {
-        classes.push_back({{"name", c.name}, {"colour", c.colour.hex()}, {"criterion", c.criterion}});
+        classes.push_back({.category = {.name = c.name, .colour = c.colour.hex()}, .criterion = c.criterion});
     }
-    return {{"guideline", guideline.name},
-            {"classes", classes},
-            {"rule", guideline.name +
-                         " of a building, by the peak depth h at its walls and the peak depth-averaged "
-                         "speed v within a map cell of them. " +
-                         guideline.remark},
-            {"source", guideline.citation}};
+    return {.guideline = guideline.name,
+            .classes = std::move(classes),
+            .rule = guideline.name +
+                    " of a building, by the peak depth h at its walls and the peak depth-averaged "
+                    "speed v within a map cell of them. " +
+                    guideline.remark,
+            .source = guideline.citation};
 }
 
-json impact_json(const std::string& id, const observe::BuildingImpact& impact, bool barrier,
-                 const report::IntensityGuideline& guideline) {
+messages::Impact impact_of(const std::string& id, const observe::BuildingImpact& impact,
+                           const report::IntensityGuideline& guideline) {
     const report::IntensityClass* intensity = guideline.class_of(impact);
-    json row = {{"id", id},
-                {"name", impact.name},
-                {"hit", impact.hit},
-                {"first_hit_s", number_or_null<json>(impact.first_hit_time)},
-                {"peak_force_kN", impact.peak_force / 1e3},
-                {"peak_impact_pressure_kPa", impact.peak_impact_pressure / 1e3},
-                {"peak_depth_m", impact.peak_depth},
-                {"peak_speed_mps", number_or_null<json>(impact.peak_speed)},
-                {"peak_dynamic_pressure_kPa", number_or_null<json>(impact.peak_dynamic_pressure / 1e3)},
-                {"impulse_kNs", impact.impulse / 1e3},
-                {"failed_s", number_or_null<json>(impact.failure_time)},
-                {"intensity", intensity != nullptr ? json(intensity->name) : json()}};
-    if (barrier) {
-        row["overtopped_m3"] = impact.overtopped_volume;
-        row["first_overtopped_s"] = number_or_null<json>(impact.first_overtopping_time);
-        row["passed_m3"] = impact.passed_volume;
-        row["retained_m3"] = impact.retained_volume;
-        row["peak_filling_height_m"] = impact.peak_filling_height;
-    }
+    return {.id = id,
+            .name = impact.name,
+            .hit = impact.hit,
+            .first_hit_s = impact.first_hit_time,
+            .peak_force_kN = impact.peak_force / 1e3,
+            .peak_impact_pressure_kPa = impact.peak_impact_pressure / 1e3,
+            .peak_depth_m = impact.peak_depth,
+            .peak_speed_mps = impact.peak_speed,
+            .peak_dynamic_pressure_kPa = impact.peak_dynamic_pressure / 1e3,
+            .impulse_kNs = impact.impulse / 1e3,
+            .failed_s = impact.failure_time,
+            .intensity = intensity != nullptr ? std::optional(intensity->name) : std::nullopt};
+}
+
+messages::BarrierImpact barrier_impact_of(const std::string& id, const observe::BuildingImpact& impact,
+                                          const report::IntensityGuideline& guideline) {
+    return {.impact = impact_of(id, impact, guideline),
+            .overtopped_m3 = impact.overtopped_volume,
+            .first_overtopped_s = impact.first_overtopping_time,
+            .passed_m3 = impact.passed_volume,
+            .retained_m3 = impact.retained_volume,
+            .peak_filling_height_m = impact.peak_filling_height};
+}
+
+messages::RemovedImpact removed_impact_of(const LiveRun::Removed& gone, const report::IntensityGuideline& guideline) {
+    messages::BarrierImpact until = barrier_impact_of(gone.id, gone.impact, guideline);
+    messages::RemovedImpact row{.impact = std::move(until.impact),
+                                .kind = gone.barrier ? "barrier" : "building",
+                                .removed_s = gone.impact.removed_time};
+    if (!gone.barrier) return row;
+    row.overtopped_m3 = until.overtopped_m3;
+    row.first_overtopped_s = until.first_overtopped_s;
+    row.passed_m3 = until.passed_m3;
+    row.retained_m3 = until.retained_m3;
+    row.peak_filling_height_m = until.peak_filling_height_m;
     return row;
 }
 
 }  // namespace
+
+messages::Parameter described(const params::Parameter& parameter, std::string key) {
+    const params::Range& range = parameter.range;
+    return {.key = std::move(key),
+            .label = label_of(parameter),
+            .unit = parameter.unit,
+            .default_ = {},
+            .value = {},
+            .range = {.low = range.low,
+                      .high = range.high,
+                      .low_included = range.low_included,
+                      .high_included = range.high_included},
+            .help = parameter.help,
+            .used_by_depth_averaged = parameter.use != params::KeyUse::particles};
+}
 
 json scene_json(const Scenario& scenario) {
     const scene::Scene& scene = scenario.scene();
@@ -190,36 +209,32 @@ json scene_json(const Scenario& scenario) {
     const Extent e = scene.terrain.elevation().geometry.extent();
     const auto [lowest, highest] = elevation_range(scene.terrain);
     const GridGeometry& map = run.observer().maps().geometry();
-    const auto latitude = geo::latitude_deg(scene.crs, {0.5 * (e.x_min + e.x_max), 0.5 * (e.y_min + e.y_max)});
-    return {{"title", scene.spec.scene.title},
-            {"description", scene.spec.scene.description},
-            {"reconstruction", scene.spec.scene.reconstruction},
-            {"assumptions", scene.spec.scene.assumptions},
-            {"sources", scene.spec.scene.sources},
-            {"crs", scene.crs.epsg != 0 ? fmt::format("EPSG:{}", scene.crs.epsg) : scene.crs.name},
-            {"crs_name", scene.crs.name},
-            {"vertical_unit", scene.vertical_unit},
-            {"latitude_deg", latitude ? json(*latitude) : json(nullptr)},
-            {"origin", {origin.x, origin.y, origin.z}},
-            {"extent_m", {e.x_min, e.y_min, e.x_max, e.y_max}},
-            {"elevation_m", with_short_numbers({lowest, highest})},
-            {"map",
-             {{"x_min_m", map.x_min},
-              {"y_min_m", map.y_min},
-              {"cell_m", map.cell},
-              {"columns", map.columns},
-              {"rows", map.rows}}},
-            {"orthophoto", !scene.spec.terrain.orthophoto.empty()},
-            {"particle_spacing_m", model.particle_spacing},
-            {"end_time_s", scene.spec.solver.end_time},
-            {"gravity_mps2", model.gravity},
-            {"flow_path", flow_path_json(scene)},
-            {"table_sections", table_sections_json()},
-            {"gauges", gauge_places(scene.gauges)},
-            {"cross_sections", section_places(scene.cross_sections)},
-            {"parameters", live_parameters_json(scene, model, run.setup().material)},
-            {"settings", settings_json(scene)},
-            {"intensity", intensity_json(guideline_of(scene))}};
+    return messages::SceneInfo{
+        .title = scene.spec.scene.title,
+        .description = scene.spec.scene.description,
+        .reconstruction = scene.spec.scene.reconstruction,
+        .assumptions = scene.spec.scene.assumptions,
+        .sources = scene.spec.scene.sources,
+        .crs = scene.crs.epsg != 0 ? fmt::format("EPSG:{}", scene.crs.epsg) : scene.crs.name,
+        .crs_name = scene.crs.name,
+        .vertical_unit = scene.vertical_unit,
+        .latitude_deg = geo::latitude_deg(scene.crs, {0.5 * (e.x_min + e.x_max), 0.5 * (e.y_min + e.y_max)}),
+        .origin = {origin.x, origin.y, origin.z},
+        .extent_m = {e.x_min, e.y_min, e.x_max, e.y_max},
+        .elevation_m = {short_number(lowest), short_number(highest)},
+        .map =
+            {.x_min_m = map.x_min, .y_min_m = map.y_min, .cell_m = map.cell, .columns = map.columns, .rows = map.rows},
+        .orthophoto = !scene.spec.terrain.orthophoto.empty(),
+        .particle_spacing_m = model.particle_spacing,
+        .end_time_s = scene.spec.solver.end_time,
+        .gravity_mps2 = model.gravity,
+        .flow_path = flow_path_of(scene),
+        .table_sections = table_sections(),
+        .gauges = gauge_places(scene.gauges),
+        .cross_sections = section_places(scene.cross_sections),
+        .parameters = parameters_of(scene, model, run.setup().material),
+        .settings = settings_of(scene),
+        .intensity = intensity_of(guideline_of(scene))};
 }
 
 namespace {
@@ -260,11 +275,11 @@ json state_json(const Scenario& scenario, bool with_hash) {
                    {"overcompressed_share", number_or_null<json>(state.overcompressed_share)},
                    {"too_compressed", state.step == 0 ? json() : json(run.too_compressed())},
                    {"verdict", state.step == 0 ? json() : json(run::verdict_json(run.verdict()))},
-                   {"recording",
-                    {{"first_s", frames.empty() ? json() : json(frames.front()->time)},
-                     {"last_s", frames.empty() ? json() : json(frames.back()->time)},
-                     {"frames", frames.size()},
-                     {"bytes", run.recording().bytes()}}}};
+                   {"recording", messages::RecordingExtent{
+                                     .first_s = frames.empty() ? std::nullopt : std::optional(frames.front()->time),
+                                     .last_s = frames.empty() ? std::nullopt : std::optional(frames.back()->time),
+                                     .frames = frames.size(),
+                                     .bytes = run.recording().bytes()}}};
     for (const observe::NamedNumber& volume : observe::volume_numbers) {
         answer[std::string(volume.key)] = now.*volume.sample;
     }
@@ -286,7 +301,8 @@ json setup_json(const Scenario& scenario) {
             number_or_null<json>(value_in_force(setup.material, *parameter, p.run->model().viscosity));
     }
     for (const Scenario::Parts::ChangeOnTheWay& change : p.changes) {
-        changes.push_back({{"time_s", change.time}, {"by", change.by}, {"sentence", change.sentence}});
+        changes.push_back(
+            messages::ChangeOnTheWay{.time_s = change.time, .by = change.by, .sentence = change.sentence});
     }
     json answer = {{"revision", p.revision},
                    {"changes", changes},
@@ -317,43 +333,39 @@ json setup_json(const Scenario& scenario) {
 json series_json(const Scenario& scenario) {
     const observe::Observer& observer = scenario.run().observer();
     const std::vector<observe::TimeSample>& rows = observer.timeseries();
-    json time = {{"time_s", column_json(rows, &observe::TimeSample::time)},
-                 {"front_chainage_m", column_json(rows, &observe::TimeSample::front_chainage)},
-                 {"kinetic_energy_J", column_json(rows, &observe::TimeSample::kinetic_energy)},
-                 {"potential_energy_J", column_json(rows, &observe::TimeSample::potential_energy)},
-                 {"largest_speed_mps", column_json(rows, &observe::TimeSample::largest_speed)},
-                 {"mean_compression", column_json(rows, &observe::TimeSample::mean_compression)},
-                 {"max_compression", column_json(rows, &observe::TimeSample::max_compression)},
-                 {"overcompressed_share", column_json(rows, &observe::TimeSample::overcompressed_share)},
-                 {"time_step_s", column_json(rows, &observe::TimeSample::time_step)}};
-    for (const observe::NamedNumber& volume : observe::volume_numbers) {
-        time[std::string(volume.key)] = column_json(rows, volume.sample);
-    }
     const std::vector<observe::FrontSample> samples = observer.front();
-    const json front = {{"chainage_m", column_json(samples, &observe::FrontSample::chainage)},
-                        {"arrival_time_s", column_json(samples, &observe::FrontSample::arrival_time)},
-                        {"front_velocity_mps", column_json(samples, &observe::FrontSample::front_velocity)},
-                        {"particle_speed_mps", column_json(samples, &observe::FrontSample::particle_speed)}};
-    return with_short_numbers({{"time", time}, {"front", front}, {"gauges", gauge_curves(observer.gauges())}});
+    messages::Series series{.time = {{"time_s", column(rows, &observe::TimeSample::time)},
+                                     {"front_chainage_m", column(rows, &observe::TimeSample::front_chainage)},
+                                     {"kinetic_energy_J", column(rows, &observe::TimeSample::kinetic_energy)},
+                                     {"potential_energy_J", column(rows, &observe::TimeSample::potential_energy)},
+                                     {"largest_speed_mps", column(rows, &observe::TimeSample::largest_speed)},
+                                     {"mean_compression", column(rows, &observe::TimeSample::mean_compression)},
+                                     {"max_compression", column(rows, &observe::TimeSample::max_compression)},
+                                     {"overcompressed_share", column(rows, &observe::TimeSample::overcompressed_share)},
+                                     {"time_step_s", column(rows, &observe::TimeSample::time_step)}},
+                            .front = {.chainage_m = column(samples, &observe::FrontSample::chainage),
+                                      .arrival_time_s = column(samples, &observe::FrontSample::arrival_time),
+                                      .front_velocity_mps = column(samples, &observe::FrontSample::front_velocity),
+                                      .particle_speed_mps = column(samples, &observe::FrontSample::particle_speed)},
+                            .gauges = gauge_curves(observer.gauges())};
+    for (const observe::NamedNumber& volume : observe::volume_numbers) {
+        series.time[std::string(volume.key)] = column(rows, volume.sample);
+    }
+    return with_short_numbers(series);
 }
 
 json impacts_json(const Scenario& scenario, std::optional<double> time) {
     const LiveRun& run = scenario.run();
     const report::IntensityGuideline& guideline = guideline_of(scenario.scene());
-    json buildings = json::array(), barriers = json::array(), removed = json::array();
+    messages::Impacts all{.buildings = {}, .barriers = {}, .removed = {}};
     for (const BuildingSetup& building : run.setup().buildings) {
-        buildings.push_back(impact_json(building.id, run.impact_on(building.id, time), false, guideline));
+        all.buildings.push_back(impact_of(building.id, run.impact_on(building.id, time), guideline));
     }
     for (const BarrierSetup& barrier : run.setup().barriers) {
-        barriers.push_back(impact_json(barrier.id, run.impact_on(barrier.id, time), true, guideline));
+        all.barriers.push_back(barrier_impact_of(barrier.id, run.impact_on(barrier.id, time), guideline));
     }
-    for (const LiveRun::Removed& gone : run.removed()) {
-        json row = impact_json(gone.id, gone.impact, gone.barrier, guideline);
-        row["kind"] = gone.barrier ? "barrier" : "building";
-        row["removed_s"] = gone.impact.removed_time;
-        removed.push_back(std::move(row));
-    }
-    return with_short_numbers({{"buildings", buildings}, {"barriers", barriers}, {"removed", removed}});
+    for (const LiveRun::Removed& gone : run.removed()) all.removed.push_back(removed_impact_of(gone, guideline));
+    return with_short_numbers(all);
 }
 
 json journal_json(const Scenario& scenario) {
@@ -362,9 +374,10 @@ json journal_json(const Scenario& scenario) {
 
 json recording_json(const Scenario& scenario) {
     const Recording& recording = scenario.run().recording();
-    json times = json::array();
-    for (const FramePtr& frame : recording.frames()) times.push_back(frame->time);
-    return {{"times_s", times}, {"bytes", recording.bytes()}};
+    messages::Recording told{.times_s = {}, .bytes = recording.bytes()};
+    told.times_s.reserve(recording.frames().size());
+    for (const FramePtr& frame : recording.frames()) told.times_s.push_back(frame->time);
+    return told;
 }
 
 }  // namespace talus::twin

@@ -1,14 +1,19 @@
 #pragma once
 
 #include <optional>
+#include <string>
 
 #include <nlohmann/json.hpp>
 
+#include "messages/messages.hpp"
+#include "params/fields.hpp"
 #include "twin/scenario.hpp"
 
 /// What a scenario answers at once, as docs/protocol.md has it, without `scenario`: it does not know its name.
 namespace talus::twin {
 
+/// A key of the scene file, without its values. `key`: with its section.
+[[nodiscard]] messages::Parameter described(const params::Parameter& parameter, std::string key);
 [[nodiscard]] nlohmann::json scene_json(const Scenario& scenario);
 /// Also without speed_factor, real_time_factor and steps_per_second; "status" is that of the run: ready, at_rest, ended
 /// or fault. `with_hash`: it takes milliseconds with many particles.

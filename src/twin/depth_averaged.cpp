@@ -11,7 +11,6 @@
 #include <fmt/ranges.h>
 
 #include "core/hash.hpp"
-#include "core/number_or_null.hpp"
 #include "core/try.hpp"
 #include "observe/map_names.hpp"
 #include "run/depth_run.hpp"

@@ -2,9 +2,6 @@
 
 #include <vector>
 
-#include <nlohmann/json.hpp>
-
-#include "core/number_or_null.hpp"
 #include "messages/messages.hpp"
 #include "observe/observation.hpp"
 #include "terrain/cross_section.hpp"
@@ -18,14 +15,6 @@ template <class Row>
     std::vector<double> values;
     values.reserve(rows.size());
     for (const Row& row : rows) values.push_back(row.*value);
-    return values;
-}
-
-/// The same; null where there is none.
-template <class Row>
-[[nodiscard]] nlohmann::json column_json(const std::vector<Row>& rows, double Row::*value) {
-    nlohmann::json values = nlohmann::json::array();
-    for (const Row& row : rows) values.push_back(number_or_null<nlohmann::json>(row.*value));
     return values;
 }
 

@@ -56,26 +56,22 @@ std::vector<std::string> obstacle_notes(const LiveRun& run) {
     return notes;
 }
 
-json read_probe(const std::vector<FramePtr>& frames, const GridGeometry& map, const PlanPoint& p) {
-    json times = json::array(), depths = json::array(), speeds = json::array(), pressures = json::array(),
-         ratios = json::array();
+messages::ProbeSeries read_probe(const std::vector<FramePtr>& frames, const GridGeometry& map, const PlanPoint& p) {
+    messages::ProbeSeries series{
+        .time_s = {}, .depth_m = {}, .speed_mps = {}, .pressure_kPa = {}, .pore_pressure_ratio = {}};
     const double column = std::floor((p.x - map.x_min) / map.cell), row = std::floor((p.y - map.y_min) / map.cell);
     const bool on_map = column >= 0 && row >= 0 && column < map.columns && row < map.rows;
     for (const FramePtr& frame : frames) {
         const DebrisAt here =
             on_map ? debris_at(*frame, static_cast<std::uint32_t>(column), static_cast<std::uint32_t>(row))
                    : DebrisAt{};
-        times.push_back(frame->time);
-        depths.push_back(here.depth);
-        speeds.push_back(here.speed);
-        pressures.push_back(here.density * here.speed * here.speed / 1e3);
-        ratios.push_back(number_or_null<json>(here.pore_pressure_ratio));
+        series.time_s.push_back(frame->time);
+        series.depth_m.push_back(here.depth);
+        series.speed_mps.push_back(here.speed);
+        series.pressure_kPa.push_back(here.density * here.speed * here.speed / 1e3);
+        series.pore_pressure_ratio.push_back(here.pore_pressure_ratio);
     }
-    return {{"time_s", times},
-            {"depth_m", depths},
-            {"speed_mps", speeds},
-            {"pressure_kPa", pressures},
-            {"pore_pressure_ratio", ratios}};
+    return series;
 }
 
 /// What was changed during the run, so that its files are the result of no single setup; empty: nothing.
@@ -113,7 +109,7 @@ Result<std::function<Grid<float>()>> layer_of(const Scenario& scenario, const st
         [name, frames = std::move(frames), frame = std::move(frame)] { return past_layer(name, frames, frame); });
 }
 
-std::function<json()> probe_at(const Scenario& scenario, const PlanPoint& p) {
+std::function<messages::ProbeSeries()> probe_at(const Scenario& scenario, const PlanPoint& p) {
     const LiveRun& run = scenario.run();
     return [frames = run.recording().frames(), map = run.observer().maps().geometry(), p] {
         return read_probe(frames, map, p);
@@ -145,9 +141,9 @@ std::pair<scene::Scene, run::RunResult> outcome_of(const Scenario& scenario) {
     return {std::move(told), std::move(result)};
 }
 
-std::function<json()> figures_of(const Scenario& scenario) {
+std::function<messages::Figures()> figures_of(const Scenario& scenario) {
     return [outcome = outcome_of(scenario)] {
-        return json{{"figures", json::parse(report::key_figures(outcome.first, outcome.second).dump())}};
+        return messages::Figures{.figures = json::parse(report::key_figures(outcome.first, outcome.second).dump())};
     };
 }
 
@@ -166,9 +162,9 @@ json measures_json(const Scenario& scenario) {
         gauges.push_back({{"name", record.gauge.name},
                           {"x_m", record.gauge.at.x},
                           {"y_m", record.gauge.at.y},
-                          {"time_s", column_json(record.rows, &observe::GaugeSample::time)},
-                          {"depth_m", column_json(record.rows, &observe::GaugeSample::depth)},
-                          {"speed_mps", column_json(record.rows, &observe::GaugeSample::speed)}});
+                          {"time_s", column(record.rows, &observe::GaugeSample::time)},
+                          {"depth_m", column(record.rows, &observe::GaugeSample::depth)},
+                          {"speed_mps", column(record.rows, &observe::GaugeSample::speed)}});
     }
     json run_out = products::run_out_json(result.observation);
     run_out["toe_x_m"] = number_or_null<json>(r.toe.x);

@@ -13,6 +13,7 @@
 #include "core/geometry.hpp"
 #include "core/grid.hpp"
 #include "core/result.hpp"
+#include "messages/messages.hpp"
 #include "run/run_result.hpp"
 #include "scene/scene.hpp"
 #include "twin/scenario.hpp"
@@ -23,8 +24,8 @@ namespace talus::twin {
 
 /// The scene with the present setup, and the result.
 [[nodiscard]] std::pair<scene::Scene, run::RunResult> outcome_of(const Scenario& scenario);
-/// `{"figures": [...]}`: the key figures, as in results.json.
-[[nodiscard]] std::function<nlohmann::json()> figures_of(const Scenario& scenario);
+/// The key figures, as in results.json.
+[[nodiscard]] std::function<messages::Figures()> figures_of(const Scenario& scenario);
 /// What results.json has.
 [[nodiscard]] nlohmann::json results_json(const Scenario& scenario);
 /// `{"run_out": ..., "gauges": [...], "crs_wkt": ...}`, as talus.h says.
@@ -36,7 +37,7 @@ namespace talus::twin {
 [[nodiscard]] Result<std::function<Grid<float>()>> layer_of(const Scenario& scenario, const std::string& name,
                                                             std::optional<double> time = {});
 /// What passed at a point, over the recording.
-[[nodiscard]] std::function<nlohmann::json()> probe_at(const Scenario& scenario, const PlanPoint& p);
+[[nodiscard]] std::function<messages::ProbeSeries()> probe_at(const Scenario& scenario, const PlanPoint& p);
 
 /// A file of a run, made when it is asked for.
 struct RunFile {

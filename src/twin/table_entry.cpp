@@ -220,7 +220,7 @@ Status check_table_entry(const TableEntry& entry, TableKind kind, const std::vec
     return check_in_scene(entry, kind, setup, scene);
 }
 
-std::vector<messages::TableSection> table_sections_json() {
+std::vector<messages::TableSection> table_sections() {
     std::vector<messages::TableSection> list;
     for (const TableKind kind : {TableKind::observation, TableKind::trigger, TableKind::alarm}) {
         for (const std::string& name : sections_of(kind)) {

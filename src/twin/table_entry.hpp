@@ -59,6 +59,6 @@ void put_entries(params::SceneSpec& spec, TableKind kind, const std::vector<Tabl
                                        const Setup& setup, const scene::Scene& scene, double particle_spacing);
 
 /// What a form needs to know of each section: `TableSection[]` of docs/protocol.md.
-[[nodiscard]] std::vector<messages::TableSection> table_sections_json();
+[[nodiscard]] std::vector<messages::TableSection> table_sections();
 
 }  // namespace talus::twin

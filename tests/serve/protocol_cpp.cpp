@@ -19,8 +19,12 @@ using serve::Variant;
 using Kind = Type::Kind;
 
 constexpr std::string_view any_json = "nlohmann::json", server_messages = "ServerMessage";
-/// These stay JSON: the first two are made by the modules that write results.json, the third is as somebody sent it.
-constexpr std::array<std::string_view, 3> as_they_came = {"Verdict", "Figure", "TriggerValues"};
+/// These stay JSON: the modules that write results.json and read overlays make their texts, scenarios and their
+/// sessions each know a part of states and setups, which follow the scene file, and values of triggers are as somebody
+/// sent them.
+constexpr std::array<std::string_view, 12> as_they_came = {
+    "Verdict", "Check",      "Figure",      "State",        "Setup",          "Gauge",
+    "Note",    "TableEntry", "OverlayData", "OverlayStyle", "OverlayFeature", "TriggerValues"};
 constexpr std::string_view made_from =
     "// Made from src/messages/protocol.json: edit that; docs/protocol.md tells how this is made again.\n"
     "// clang-format off\n";
@@ -79,8 +83,11 @@ class Structs {
 
   private:
     /// Live values of the scene file stay JSON.
+    static bool is_described(const TypeDescription& type) {
+        return !type.is && type.section.empty() && type.input.empty();
+    }
     static bool is_struct(const TypeDescription& type) {
-        return !type.is && type.section.empty() && type.input.empty() &&
+        return is_described(type) &&
                std::find(as_they_came.begin(), as_they_came.end(), type.name) == as_they_came.end();
     }
 
@@ -91,9 +98,10 @@ class Structs {
             const TypeDescription* found = all_.find(name);
             if (found == nullptr || !known_.insert(name).second) continue;
             if (found->is) add(*found->is);
-            if (!is_struct(*found)) continue;
+            if (!is_described(*found)) continue;
             if (!found->extends.empty()) add(serve::of_kind(Kind::name, found->extends));
             for (const Field& field : found->fields) add(field.type);
+            if (!is_struct(*found)) continue;
             const std::string base = found->extends.empty() ? "" : "from." + member_name(found->extends);
             write(name, found->extends, found->fields, base);
         }

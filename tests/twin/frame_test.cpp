@@ -225,7 +225,7 @@ TEST(Probe, reads_depth_speed_and_pressure_from_the_recording) {
     EXPECT_GT(deepest, 0.1);
     EXPECT_NEAR(deepest, depth.at(column, row), 0.15 * deepest);
     EXPECT_NEAR(fastest, speed.at(column, row), 0.2 * fastest);
-    EXPECT_EQ(probe_at(*scenario, {0, 0})()["depth_m"][5], 0);
+    EXPECT_EQ(json(probe_at(*scenario, {0, 0})())["depth_m"][5], 0);
 }
 
 TEST(Grid, message_is_as_the_protocol_says) {

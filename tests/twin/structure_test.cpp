@@ -202,7 +202,7 @@ TEST(Inflow, over_an_area_with_a_density_runs_live_and_again_after_a_restart) {
     EXPECT_NEAR(number(*scenario, "volume_released_m3"), 36, 3);
     expect_balance(*scenario);
     bool any = false;
-    const auto series = probe_at(*scenario, {west + 27, south + 29})();
+    const json series = probe_at(*scenario, {west + 27, south + 29})();
     for (std::size_t k = 0; k < series["speed_mps"].size(); ++k) {
         const double speed = series["speed_mps"][k];
         any = any || speed > 0.1;

@@ -246,7 +246,7 @@ TEST(PlacedTriggers, start_a_run_of_the_scene_with_their_limits) {
 }
 
 TEST(TableSections, say_what_a_form_needs_and_name_no_file_and_no_address) {
-    const json sections = table_sections_json();
+    const json sections = table_sections();
     ASSERT_EQ(sections.size(), 9U);
     for (const json& section : sections) {
         for (const json& key : section["keys"]) {
