@@ -1,5 +1,6 @@
 #include "serve/calibrations.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <exception>
 #include <system_error>
@@ -8,7 +9,6 @@
 #include <fmt/format.h>
 
 #include "calibrate/calibration_products.hpp"
-#include "core/number_or_null.hpp"
 #include "core/try.hpp"
 #include "ensemble/ensemble_folder.hpp"
 #include "params/fields.hpp"
@@ -83,21 +83,23 @@ Calibrations::Calibrations(Executor& executor, std::shared_ptr<const scene::Scen
       scene_(opened_),
       observed_(ensemble::observed_values(*scene_)),
       tell_(std::move(tell)),
-      lane_(executor, "calibration", Priority::idle) {
-    status_ = {{"why_not", why_none(observed_, settings_.source)},
-               {"by", nullptr},
-               {"observations", observations_json(observed_)},
-               {"parameters", json::array()},
-               {"phase", nullptr},
-               {"runs_at_most", 0},
-               {"runs_failed", 0},
-               {"fast_runs", json::array()},
-               {"fast_runs_at_most", 0},
-               {"runs", json::array()},
-               {"map", nullptr},
-               {"best", nullptr},
-               {"result", nullptr}};
-}
+      status_{.state = calibration_.state_name(),
+              .why_not = why_none(observed_, settings_.source),
+              .by = {},
+              .message = {},
+              .observations = listed(observed_),
+              .parameters = {},
+              .phase = {},
+              .runs_at_most = 0,
+              .runs_failed = 0,
+              .fast_runs = {},
+              .fast_runs_at_most = 0,
+              .wall_remaining_s = {},
+              .runs = {},
+              .map = {},
+              .best = {},
+              .result = {}},
+      lane_(executor, "calibration", Priority::idle) {}
 
 Calibrations::~Calibrations() {
     close();
@@ -118,10 +120,10 @@ json Calibrations::describe() const {
 }
 
 json Calibrations::describe_now() const {
-    json now = status_;
-    now["state"] = calibration_.state_name();
-    now["message"] = calibration_.message;
-    now["wall_remaining_s"] = calibration_.wall_remaining ? json(*calibration_.wall_remaining) : json();
+    messages::CalibrationStatus now = status_;
+    now.state = calibration_.state_name();
+    now.message = calibration_.message;
+    now.wall_remaining_s = calibration_.wall_remaining;
     return now;
 }
 
@@ -143,8 +145,8 @@ void Calibrations::start(const json& wanted, const std::string& by, const Respon
         return;
     }
     take_observations();
-    if (!status_["why_not"].is_null()) {
-        respond(error_response(409, status_["why_not"].get<std::string>()));
+    if (status_.why_not) {
+        respond(error_response(409, *status_.why_not));
         return;
     }
     busy_ = true;
@@ -196,7 +198,7 @@ void Calibrations::work(calibrate::CalibrationPlan plan, const std::string& by, 
         }
         std::string done = fmt::format("calibration of {} with at most {} runs", names, plan.search.runs);
         if (plan.fast) done += fmt::format(" and {} of the depth-averaged model", plan.search.fast_runs);
-        respond(json_response(200, {{"done", done}, {"created", nullptr}}));
+        respond(json_response(200, messages::Done{.done = done, .created = {}}));
         ending = calibrate_in(folder, plan, *runs);
     } catch (const std::exception& error) {  // running out of memory here must not end the live run
         ending = {State::failed, fmt::format("the calibration ended unexpectedly: {}", error.what())};
@@ -229,54 +231,52 @@ Calibrations::Ending Calibrations::calibrate_in(const fs::path& path, const cali
 
 void Calibrations::begin(const calibrate::CalibrationPlan& plan, const std::string& by) {
     const std::lock_guard lock(mutex_);
-    json parameters = json::array();
+    status_.parameters.clear();
+    status_.parameters.reserve(plan.factors.size());
     for (const ensemble::Factor& factor : plan.factors) {
         const params::Parameter& parameter = *find_live_parameter(factor.key);
-        parameters.push_back({{"key", factor.key},
-                              {"label", twin::label_of(parameter)},
-                              {"unit", parameter.unit},
-                              {"low", factor.distribution.low},
-                              {"high", factor.distribution.high}});
+        status_.parameters.push_back({.key = factor.key,
+                                      .label = twin::label_of(parameter),
+                                      .unit = parameter.unit,
+                                      .low = factor.distribution.low,
+                                      .high = factor.distribution.high});
     }
     calibration_.state = State::running;
     calibration_.message.clear();
     calibration_.wall_remaining.reset();
-    status_["by"] = by;
-    status_["observations"] = observations_json(observed_);
-    status_["parameters"] = parameters;
-    status_["phase"] = search_phase_name(calibrate::SearchPhase::design);
-    status_["runs_at_most"] = plan.search.runs;
-    status_["runs_failed"] = 0;
-    status_["fast_runs"] = json::array();
-    status_["fast_runs_at_most"] = plan.search.fast_runs;
-    status_["runs"] = json::array();
-    for (const char* none : {"map", "best", "result"}) status_[none] = nullptr;
+    status_.by = by;
+    status_.observations = listed(observed_);
+    status_.phase = search_phase_name(calibrate::SearchPhase::design);
+    status_.runs_at_most = plan.search.runs;
+    status_.runs_failed = 0;
+    status_.fast_runs.clear();
+    status_.fast_runs_at_most = plan.search.fast_runs;
+    status_.runs.clear();
+    status_.map.reset();
+    status_.best.reset();
+    status_.result.reset();
     tell_now();
 }
 
 void Calibrations::take_run(const calibrate::CalibrationRun& run) {
     const std::lock_guard lock(mutex_);
-    json made = {
-        {"values", run.values}, {"phase", search_phase_name(run.phase)}, {"misfit", number_or_null<json>(run.misfit)}};
+    messages::CalibrationRun made{.values = run.values, .phase = search_phase_name(run.phase), .misfit = run.misfit};
     if (run.fast) {
-        status_["fast_runs"].push_back(std::move(made));
+        status_.fast_runs.push_back(std::move(made));
         return tell_now();
     }
-    if (std::isfinite(run.misfit)) {
-        json& best = status_["best"];
-        if (best.is_null() || run.misfit < best["misfit"].get<double>()) {
-            best = {{"run", run.run}, {"values", run.values}, {"misfit", run.misfit}};
-        }
-    } else {
-        status_["runs_failed"] = status_["runs_failed"].get<int>() + 1;
+    if (!std::isfinite(run.misfit)) {
+        ++status_.runs_failed.value;
+    } else if (!status_.best || run.misfit < status_.best->misfit) {
+        status_.best = {.run = run.run, .values = run.values, .misfit = run.misfit};
     }
-    status_["runs"].push_back(std::move(made));
+    status_.runs.push_back(std::move(made));
     tell_now();
 }
 
 void Calibrations::take_progress(const calibrate::CalibrationProgress& now) {
     const std::lock_guard lock(mutex_);
-    status_["phase"] = search_phase_name(now.phase);
+    status_.phase = search_phase_name(now.phase);
     calibration_.wall_remaining = std::isfinite(now.wall_remaining) ? std::optional(now.wall_remaining) : std::nullopt;
     if (Clock::now() - told_ >= tell_every) tell_now();
 }
@@ -284,42 +284,43 @@ void Calibrations::take_progress(const calibrate::CalibrationProgress& now) {
 void Calibrations::take_fit(const calibrate::Calibration& now) {
     if (!now.result.best) return;
     const calibrate::MisfitMap map = misfit_map(now);
-    json misfit = json::array();
-    for (const double value : map.misfit) misfit.push_back(number_or_null<json>(rounded(value)));
+    std::vector<double> misfit(map.misfit.size());
+    std::transform(map.misfit.begin(), map.misfit.end(), misfit.begin(), rounded);
     const std::vector<double>& predicted = now.result.runs[*now.result.best].predicted;
     const std::lock_guard lock(mutex_);
-    status_["map"] = {{"columns", map.cells}, {"rows", map.misfit.size() / map.cells}, {"misfit", misfit}};
+    status_.map = {.columns = map.cells, .rows = misfit.size() / map.cells, .misfit = std::move(misfit)};
     for (std::size_t j = 0; j < observed_.size() && j < predicted.size(); ++j) {
         const double value = std::isfinite(predicted[j]) ? predicted[j] : observed_[j].unreached;
-        status_["observations"][j]["best"] = number_or_null<json>(predicted[j]);
-        status_["observations"][j]["deviation"] = number_or_null<json>(deviation_of(observed_[j], value));
+        status_.observations[j].best = predicted[j];
+        status_.observations[j].deviation = deviation_of(observed_[j], value);
     }
     tell_now();
 }
 
 void Calibrations::take_result(const calibrate::Calibration& made) {
     const calibrate::CalibrationSummary summary = summarise(made);
-    json parameters = json::array();
+    std::vector<messages::FoundParameter> parameters;
+    parameters.reserve(summary.factors.size());
     for (std::size_t k = 0; k < summary.factors.size(); ++k) {
         const calibrate::FactorResult& f = summary.factors[k];
-        parameters.push_back({{"key", made.factors[k].key},
-                              {"best", f.best},
-                              {"median", f.median},
-                              {"low_95", f.low},
-                              {"high_95", f.high},
-                              {"share_of_prior_width", f.kept}});
+        parameters.push_back({.key = made.factors[k].key,
+                              .best = f.best,
+                              .median = f.median,
+                              .low_95 = f.low,
+                              .high_95 = f.high,
+                              .share_of_prior_width = f.kept});
     }
     const std::lock_guard lock(mutex_);
-    status_["result"] = {{"settled", made.result.settled},
-                         {"checks_within_95", number_or_null<json>(summary.checks_within)},
-                         {"parameters", parameters},
-                         {"warnings", summary.warnings}};
+    status_.result = {.settled = made.result.settled,
+                      .checks_within_95 = summary.checks_within,
+                      .parameters = std::move(parameters),
+                      .warnings = summary.warnings};
 }
 
 void Calibrations::end(const Ending& ending) {
     const std::lock_guard lock(mutex_);
     calibration_.end(ending.state, ending.message);
-    status_["phase"] = nullptr;
+    status_.phase.reset();
     busy_ = false;
     if (!closed_) take_observations();  // what was followed meanwhile
     tell_now();

@@ -12,6 +12,7 @@
 
 #include "calibrate/calibration.hpp"
 #include "core/result.hpp"
+#include "messages/messages.hpp"
 #include "run/variants.hpp"
 #include "scene/scene.hpp"
 #include "serve/executor.hpp"
@@ -75,10 +76,11 @@ class Calibrations {
     void tell_now();
     [[nodiscard]] std::filesystem::path new_folder() const;
 
-    [[nodiscard]] static nlohmann::json observations_json(const std::vector<ensemble::ObservedValue>& observed);
-    /// A sentence; null: there can be one.
-    [[nodiscard]] static nlohmann::json why_none(const std::vector<ensemble::ObservedValue>& observed,
-                                                 const run::SceneSource& source);
+    [[nodiscard]] static std::vector<messages::CalibratedObservation> listed(
+        const std::vector<ensemble::ObservedValue>& observed);
+    /// A sentence; empty: there can be one.
+    [[nodiscard]] static std::optional<std::string> why_none(const std::vector<ensemble::ObservedValue>& observed,
+                                                             const run::SceneSource& source);
     /// Under the lock, while none runs: takes the observations that are followed.
     void take_observations();
     /// Loads the scene with these observations. Errors: it cannot be read or written.
@@ -90,10 +92,10 @@ class Calibrations {
     std::vector<ensemble::ObservedValue> observed_;
     run::SceneSource source_;  // of the present calibration
     std::function<void(nlohmann::json)> tell_;
-    mutable std::mutex mutex_;         // guards the following members
-    Undertaking calibration_;          // the current or the last one
-    nlohmann::json status_;            // what describe() gives beside that
-    nlohmann::json followed_, taken_;  // observations of the setup; null: those of the scene
+    mutable std::mutex mutex_;            // guards the following members
+    Undertaking calibration_;             // the current or the last one
+    messages::CalibrationStatus status_;  // what describe() gives beside that
+    nlohmann::json followed_, taken_;     // observations of the setup; null: those of the scene
     bool busy_ = false, closed_ = false;
     Clock::time_point told_{};
     Lane lane_;

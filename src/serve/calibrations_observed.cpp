@@ -20,25 +20,28 @@ bool same_entries(const std::vector<twin::TableEntry>& a, const std::vector<twin
 
 }  // namespace
 
-json Calibrations::observations_json(const std::vector<ensemble::ObservedValue>& observed) {
-    json list = json::array();
+std::vector<messages::CalibratedObservation> Calibrations::listed(
+    const std::vector<ensemble::ObservedValue>& observed) {
+    using Kind = ensemble::ObservedValue::Kind;
+    std::vector<messages::CalibratedObservation> list;
+    list.reserve(observed.size());
     for (const ensemble::ObservedValue& o : observed) {
-        list.push_back({{"name", o.name},
-                        {"unit", o.unit},
-                        {"observed", o.value},
-                        {"uncertainty", o.uncertainty},
-                        {"is", o.kind == ensemble::ObservedValue::Kind::equal      ? "equal"
-                               : o.kind == ensemble::ObservedValue::Kind::at_least ? "at_least"
-                                                                                   : "below"},
-                        {"best", nullptr},
-                        {"deviation", nullptr}});
+        const char* is = o.kind == Kind::equal ? "equal" : o.kind == Kind::at_least ? "at_least" : "below";
+        list.push_back({.name = o.name,
+                        .unit = o.unit,
+                        .observed = o.value,
+                        .uncertainty = o.uncertainty,
+                        .is = is,
+                        .best = {},
+                        .deviation = {}});
     }
     return list;
 }
 
-json Calibrations::why_none(const std::vector<ensemble::ObservedValue>& observed, const run::SceneSource& source) {
+std::optional<std::string> Calibrations::why_none(const std::vector<ensemble::ObservedValue>& observed,
+                                                  const run::SceneSource& source) {
     if (source.file.empty()) return "This program serves the scene without calibrations.";
-    if (!observed.empty()) return nullptr;
+    if (!observed.empty()) return {};
     return "Scenario A has no field observations to calibrate against. Add them on the tab Points, or in the scene "
            "file.";
 }
@@ -64,9 +67,9 @@ void Calibrations::take_observations() {
         scene_ = std::move(scene);
     }
     observed_ = ensemble::observed_values(*scene_);
-    status_["why_not"] = why_none(observed_, settings_.source);
+    status_.why_not = why_none(observed_, settings_.source);
     // What a former calibration found is beside the observations that it had.
-    if (calibration_.state == State::idle) status_["observations"] = observations_json(observed_);
+    if (calibration_.state == State::idle) status_.observations = listed(observed_);
     tell_now();
 }
 
