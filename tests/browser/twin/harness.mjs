@@ -121,17 +121,21 @@ export class Run {
       await this.last?.screenshot({ path: join(this.output, `failed-${this.failed}.png`), timeout: 30_000 }).catch(() => {});
     }
   }
-  /** finest: with the whole mesh of the ground; a coarser one is drawn in a fraction of the time. look: natural ones take far longer to draw without a graphics card. edits: how runs that have begun are edited; null: not chosen yet. touch: as on a phone. late: which texts of the server come late, as from a busy one. scale: pixels of the screen per pixel of the page; with fewer than one, text moves by whole pixels between two pictures of one view. opening: with the first view of the scene; otherwise the whole ground is shown, where places are at the same shares of the view whatever the scene holds. prepare: called with the page before it loads. TALUS_SITE=FOLDER: with another build of the page than the program's. */
-  async open(link, { width = 1280, height = 720, reduced = true, name, finest = false, edits = "now", look = "scientific", touch = false, late, scale = 1, opening = false, prepare } = {}) {
-    const context = await this.browser.newContext({ viewport: { width, height }, deviceScaleFactor: scale, reducedMotion: reduced ? "reduce" : "no-preference", acceptDownloads: true, hasTouch: touch, isMobile: touch });
-    const page = await context.newPage();
-    if (name) await page.addInitScript((n) => localStorage.setItem("talus-name", n), name);
-    await page.addInitScript((l) => localStorage.getItem("talus-look") ?? localStorage.setItem("talus-look", l), look);
-    // Without a graphics card pictures take all of the processor that they get: ten a second show as much to a test as sixty.
-    await page.addInitScript((least_ms) => {
+  /** Without a graphics card pictures take all of the processor that they get: ten a second show as much to a test as sixty. */
+  async context(options) {
+    const context = await this.browser.newContext(options);
+    await context.addInitScript((least_ms) => {
       const ask = window.requestAnimationFrame.bind(window);
       window.requestAnimationFrame = (draw) => setTimeout(() => ask(draw), least_ms);
     }, 100);
+    return context;
+  }
+  /** finest: with the whole mesh of the ground; a coarser one is drawn in a fraction of the time. look: natural ones take far longer to draw without a graphics card. edits: how runs that have begun are edited; null: not chosen yet. touch: as on a phone. late: which texts of the server come late, as from a busy one. scale: pixels of the screen per pixel of the page; with fewer than one, text moves by whole pixels between two pictures of one view. opening: with the first view of the scene; otherwise the whole ground is shown, where places are at the same shares of the view whatever the scene holds. prepare: called with the page before it loads. TALUS_SITE=FOLDER: with another build of the page than the program's. */
+  async open(link, { width = 1280, height = 720, reduced = true, name, finest = false, edits = "now", look = "scientific", touch = false, late, scale = 1, opening = false, prepare } = {}) {
+    const context = await this.context({ viewport: { width, height }, deviceScaleFactor: scale, reducedMotion: reduced ? "reduce" : "no-preference", acceptDownloads: true, hasTouch: touch, isMobile: touch });
+    const page = await context.newPage();
+    if (name) await page.addInitScript((n) => localStorage.setItem("talus-name", n), name);
+    await page.addInitScript((l) => localStorage.getItem("talus-look") ?? localStorage.setItem("talus-look", l), look);
     if (edits) await page.addInitScript((habit) => sessionStorage.getItem("talus-edits") ?? sessionStorage.setItem("talus-edits", habit), edits);
     page.on("console", (message) => {
       if (["error", "warning"].includes(message.type()) && !/WebSocket connection|ERR_CONNECTION|GPU stall|GL Driver|Failed to load resource|does not answer|software WebGL/i.test(message.text())) {

@@ -137,7 +137,7 @@ export async function testSharing(run) {
     await run.shot(ada, "16-beyond");
     const seen = await pixels(ada, await ada.locator(".qr svg").screenshot());
     assert.equal(jsQR(Uint8ClampedArray.from(seen.data), seen.width, seen.height)?.data, url, "what a phone's camera reads");
-    const context = await run.browser.newContext();
+    const context = await run.context();
     const eve = await context.newPage();
     await eve.goto(url);
     await shows(eve, () => document.querySelector(".transport"), "the page of another computer");

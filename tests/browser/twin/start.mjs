@@ -25,7 +25,7 @@ export async function testStart(run) {
   const folder = mkdtempSync(join(tmpdir(), "talus-start-"));
   const server = await startServer([run.command[0], "start", "--no-browser", "--json", "--folder", folder]);
   run.servers.push(server);
-  const context = await run.browser.newContext({ viewport: { width: 1440, height: 900 } });
+  const context = await run.context({ viewport: { width: 1440, height: 900 } });
   const page = await context.newPage();
   context.setDefaultTimeout(limit_ms);
   run.last = page;
