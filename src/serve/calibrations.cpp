@@ -288,7 +288,7 @@ void Calibrations::take_fit(const calibrate::Calibration& now) {
     std::transform(map.misfit.begin(), map.misfit.end(), misfit.begin(), rounded);
     const std::vector<double>& predicted = now.result.runs[*now.result.best].predicted;
     const std::lock_guard lock(mutex_);
-    status_.map = {.columns = map.cells, .rows = misfit.size() / map.cells, .misfit = std::move(misfit)};
+    status_.map = {.columns = map.cells, .rows = map.misfit.size() / map.cells, .misfit = std::move(misfit)};
     for (std::size_t j = 0; j < observed_.size() && j < predicted.size(); ++j) {
         const double value = std::isfinite(predicted[j]) ? predicted[j] : observed_[j].unreached;
         status_.observations[j].best = predicted[j];
