@@ -17,10 +17,10 @@ namespace {
 constexpr std::array<double, 9> misfit_breaks = {0, 0.5, 1, 2, 4, 8, 16, 32, 64};  // limits of the map's colours
 
 std::vector<std::string> misfit_colours() {
-    constexpr report::Ramp ramp = {95, 0.05, 262, 0.12, 0.96, 0.34};
+    constexpr Ramp ramp = {95, 0.05, 262, 0.12, 0.96, 0.34};
     std::vector<std::string> colours;
     for (std::size_t i = 0; i < misfit_breaks.size(); ++i) {
-        colours.push_back(ramp.at(1 - static_cast<double>(i) / (misfit_breaks.size() - 1)).hex());
+        colours.push_back(report::colour_at(ramp, 1 - static_cast<double>(i) / (misfit_breaks.size() - 1)).hex());
     }
     return colours;
 }

@@ -50,8 +50,8 @@ class Workers {
         return failed_ || (options_.stop_requested && options_.stop_requested->load());
     }
     /// Empty if the run was interrupted.
-    [[nodiscard]] std::optional<std::pair<RunRecord, observe::HazardMaps>> compute(std::size_t run, std::size_t worker);
-    void finish(const RunRecord& record, const observe::HazardMaps& maps, std::size_t worker);
+    [[nodiscard]] std::optional<std::pair<RunRecord, HazardMaps>> compute(std::size_t run, std::size_t worker);
+    void finish(const RunRecord& record, const HazardMaps& maps, std::size_t worker);
     void report(std::size_t worker, double share);
     void estimate(double now);
 
@@ -115,7 +115,7 @@ void Workers::find_work() {
     }
 }
 
-std::optional<std::pair<RunRecord, observe::HazardMaps>> Workers::compute(std::size_t run, std::size_t worker) {
+std::optional<std::pair<RunRecord, HazardMaps>> Workers::compute(std::size_t run, std::size_t worker) {
     const PlannedRun planned = runs_.at(run);
     {
         const std::lock_guard lock(mutex_);
@@ -125,7 +125,7 @@ std::optional<std::pair<RunRecord, observe::HazardMaps>> Workers::compute(std::s
     overrides.insert(overrides.end(), planned.overrides.begin(), planned.overrides.end());
     overrides.push_back(fmt::format("solver.thread_count={}", options_.threads_per_run));
 
-    std::pair<RunRecord, observe::HazardMaps> made;
+    std::pair<RunRecord, HazardMaps> made;
     RunRecord& record = made.first;
     record.run = run;
     record.values = planned.values;
@@ -209,7 +209,7 @@ void Workers::estimate(double now) {
     next_estimate_ = now + 0.1;
 }
 
-void Workers::finish(const RunRecord& record, const observe::HazardMaps& maps, std::size_t worker) {
+void Workers::finish(const RunRecord& record, const HazardMaps& maps, std::size_t worker) {
     const Status written = write_run_record(folder_.run_file(record.run), folder_.plan(), record, maps);
     {
         const std::lock_guard lock(mutex_);

@@ -28,7 +28,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr report::Ramp probability_ramp = {300, 0.05, 262, 0.13, 0.94, 0.26};
+constexpr Ramp probability_ramp = {300, 0.05, 262, 0.13, 0.94, 0.26};
 
 /// Names shared by all maps of one quantity, and those of a threshold.
 struct QuantityWords {

@@ -162,7 +162,7 @@ Result<std::vector<Grid<float>>> intensity_shares(const Stack& stack, const repo
     std::vector<Grid<float>> shares(guideline.classes.size(), Grid<float>(stack.geometry, 0));
     for (const auto& [file, record] : stack.layers) {
         const GridGeometry& g = record->geometry;
-        observe::HazardMaps maps;
+        HazardMaps maps;
         for (const std::size_t map : {depth_map, speed_map, arrival_map}) {
             Grid<float>& grid = maps.*recorded_maps[map].grid;
             grid.geometry = g;

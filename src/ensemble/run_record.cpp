@@ -104,7 +104,7 @@ RunRecord record_of(const Json& j) {
 }
 
 /// Ground that debris reached, m2.
-double reached_area(const observe::HazardMaps& maps) {
+double reached_area(const HazardMaps& maps) {
     std::size_t cells = 0;
     for (const float v : maps.peak_depth.values) cells += std::isnan(v) ? 0 : 1;
     const double cell = maps.peak_depth.geometry.cell;
@@ -151,9 +151,9 @@ std::vector<double> measure(const scene::Scene& scene, const run::RunResult& res
 }
 
 Status write_run_record(const std::filesystem::path& file, const std::string& plan, const RunRecord& record,
-                        const observe::HazardMaps& maps) {
+                        const HazardMaps& maps) {
     std::string text = header_json(plan, record).dump(-1, ' ', false, Json::error_handler_t::replace) + "\n";
-    for (const observe::NamedMap& map : recorded_maps) {
+    for (const NamedMap& map : recorded_maps) {
         const std::vector<float>& values = (maps.*map.grid).values;
         if (values.size() != record.geometry.size()) continue;  // a run that failed has none
         const std::size_t at = text.size();

@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "core/grid.hpp"
+#include "core/hazard_maps.hpp"
 #include "core/result.hpp"
-#include "observe/map_names.hpp"
 #include "observe/observation.hpp"
 #include "products/checked_file.hpp"
 #include "run/run_result.hpp"
@@ -49,7 +49,7 @@ struct RunRecord {
 };
 
 /// The maps that a record holds, in the order of the file.
-inline constexpr auto& recorded_maps = observe::named_maps;
+inline constexpr auto& recorded_maps = named_maps;
 
 /// Of the complete runs.
 [[nodiscard]] run::RunVerdict judge_together(const std::vector<RunRecord>& runs);
@@ -57,7 +57,7 @@ inline constexpr auto& recorded_maps = observe::named_maps;
 /// Writes under a temporary name first, so that a file with the final name is complete. `plan`: as plan_identity;
 /// `maps` all have record.geometry.
 [[nodiscard]] Status write_run_record(const std::filesystem::path& file, const std::string& plan,
-                                      const RunRecord& record, const observe::HazardMaps& maps);
+                                      const RunRecord& record, const HazardMaps& maps);
 
 using products::Verify;
 

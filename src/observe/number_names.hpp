@@ -5,7 +5,7 @@
 #include <string_view>
 
 #include "core/angle.hpp"
-#include "observe/map_names.hpp"
+#include "core/hazard_maps.hpp"
 #include "observe/observation.hpp"
 #include "observe/peaks.hpp"
 

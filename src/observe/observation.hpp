@@ -8,6 +8,7 @@
 
 #include "core/geometry.hpp"
 #include "core/grid.hpp"
+#include "core/hazard_maps.hpp"
 #include "params/spec.hpp"
 #include "terrain/cross_section.hpp"
 #include "terrain/flow_path.hpp"
@@ -18,16 +19,6 @@
 namespace talus::observe {
 
 inline constexpr double never = std::numeric_limits<double>::quiet_NaN();
-
-/// Rasters over the part of the terrain that debris reached, grown by a margin. NaN: debris never came there.
-struct HazardMaps {
-    Grid<float> peak_depth;       ///< vertical flow depth, m
-    Grid<float> peak_speed;       ///< depth-averaged speed, m/s
-    Grid<float> peak_pressure;    ///< dynamic: density * speed^2, Pa
-    Grid<float> arrival_time;     ///< first time above the arrival depth, s
-    Grid<float> deposit_depth;    ///< depth at the end of the run, m
-    Grid<float> arrival_speed{};  ///< depth-averaged speed at the arrival time, m/s
-};
 
 /// The front at one chainage of the flow path.
 struct FrontSample {

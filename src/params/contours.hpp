@@ -1,17 +1,25 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "core/hazard_maps.hpp"
 #include "core/result.hpp"
 
 namespace talus::params {
 
-/// Maps of which contours can be asked for, by the names of their files.
-inline constexpr std::array contour_maps = {"peak_depth",    "peak_speed",     "peak_pressure", "arrival_time",
-                                            "deposit_depth", "peak_thickness", "erosion_depth"};
+/// Maps of which contours can be asked for, by the names of their files: those of every run, and two that not every run
+/// has.
+inline constexpr auto contour_maps = [] {
+    std::array<std::string_view, named_maps.size() + 2> keys = {};
+    std::transform(named_maps.begin(), named_maps.end(), keys.begin(), [](const NamedMap& map) { return map.key; });
+    keys[named_maps.size()] = "peak_thickness";
+    keys[named_maps.size() + 1] = "erosion_depth";
+    return keys;
+}();
 
 /// Contours of a map.
 struct MapContours {

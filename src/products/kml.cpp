@@ -80,7 +80,7 @@ struct Part {
     std::string styles, folder;
 };
 
-Result<Part> inundation(const observe::HazardMaps& maps, double least, const Geometry& geometry) {
+Result<Part> inundation(const HazardMaps& maps, double least, const Geometry& geometry) {
     Grid<float> inside = maps.peak_depth;
     for (float& value : inside.values) value = value >= static_cast<float>(least) ? 1 : 0;
     TALUS_ASSIGN(const auto outlines, geo::class_outlines(inside, 1));
@@ -93,10 +93,10 @@ Result<Part> inundation(const observe::HazardMaps& maps, double least, const Geo
 }
 
 /// Bands of equal arrival time in the colours of the map.
-Result<Part> arrival(const observe::HazardMaps& maps, const Geometry& geometry) {
+Result<Part> arrival(const HazardMaps& maps, const Geometry& geometry) {
     const auto& all = report::hazard_maps();
     const auto map = std::find_if(all.begin(), all.end(), [](const report::HazardMap& candidate) {
-        return candidate.grid == &observe::HazardMaps::arrival_time;
+        return candidate.grid == &HazardMaps::arrival_time;
     });
     const report::Classes bands = report::even_classes(report::greatest(maps.arrival_time), map->ramp);
     Grid<float> classes = maps.arrival_time;

@@ -46,7 +46,7 @@ void add_maps(const scene::Scene& scene, const run::RunResult& result, const std
     const auto add = [&](const report::HazardMap& map, std::shared_ptr<const Grid<float>> grid) {
         add_map(map, std::move(grid), scene, result, folder, layers, jobs);
     };
-    const observe::HazardMaps& maps = result.observation.maps;
+    const HazardMaps& maps = result.observation.maps;
     for (const report::HazardMap& map : report::hazard_maps()) add(map, kept(maps.*map.grid));
     const report::IntensityGuideline& guideline = report::intensity_guideline(scene.spec.outputs.intensity_guideline);
     add(intensity_style(guideline), made(intensity_map(guideline, maps)));

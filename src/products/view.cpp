@@ -33,12 +33,13 @@ double View::greatest_speed() const {
 std::vector<report::Colour> View::speed_colours(const std::vector<float>& speeds) const {
     const auto& maps = report::hazard_maps();
     const auto map = std::find_if(maps.begin(), maps.end(), [](const report::HazardMap& candidate) {
-        return candidate.grid == &observe::HazardMaps::peak_speed;
+        return candidate.grid == &HazardMaps::peak_speed;
     });
     // A colour is costly to compute.
     constexpr std::size_t steps = 64;
     std::vector<report::Colour> ramp;
-    for (std::size_t k = 0; k < steps; ++k) ramp.push_back(map->ramp.at(static_cast<double>(k) / (steps - 1)));
+    for (std::size_t k = 0; k < steps; ++k)
+        ramp.push_back(report::colour_at(map->ramp, static_cast<double>(k) / (steps - 1)));
     const double greatest = std::max(greatest_speed(), 1e-6);
     std::vector<report::Colour> colours;
     colours.reserve(speeds.size());

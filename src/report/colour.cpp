@@ -44,12 +44,13 @@ std::string Colour::hex() const {
     return fmt::format("#{:02x}{:02x}{:02x}", red, green, blue);
 }
 
-Colour Ramp::at(double share) const {
+Colour colour_at(const Ramp& ramp, double share) {
     share = std::clamp(share, 0.0, 1.0);
-    const double l = low_lightness + (high_lightness - low_lightness) * share;
-    const double hue = (low_hue + (high_hue - low_hue) * share) * std::numbers::pi / 180;
+    const double l = ramp.low_lightness + (ramp.high_lightness - ramp.low_lightness) * share;
+    const double hue = (ramp.low_hue + (ramp.high_hue - ramp.low_hue) * share) * std::numbers::pi / 180;
     // Chroma peaks between the ends: very light and very dark colours have little chroma.
-    double chroma = low_chroma + (high_chroma - low_chroma) * share + 0.05 * std::sin(std::numbers::pi * share);
+    double chroma =
+        ramp.low_chroma + (ramp.high_chroma - ramp.low_chroma) * share + 0.05 * std::sin(std::numbers::pi * share);
     Linear c = to_linear(l, chroma * std::cos(hue), chroma * std::sin(hue));
     while (!displayable(c) && chroma > 0) {
         chroma -= 0.002;
@@ -78,7 +79,7 @@ Classes fixed_classes(const std::vector<double>& breaks, double largest, const R
     }
     const std::size_t n = classes.breaks.size();
     for (std::size_t k = 0; k < n; ++k) {
-        classes.colours.push_back(ramp.at(n == 1 ? 0.5 : static_cast<double>(k) / static_cast<double>(n - 1)));
+        classes.colours.push_back(colour_at(ramp, n == 1 ? 0.5 : static_cast<double>(k) / static_cast<double>(n - 1)));
     }
     return classes;
 }

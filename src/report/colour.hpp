@@ -4,6 +4,8 @@
 #include <string>
 #include <vector>
 
+#include "core/ramp.hpp"
+
 /// Colours and class breaks of the report's maps.
 namespace talus::report {
 
@@ -14,16 +16,8 @@ struct Colour {
     friend bool operator==(const Colour&, const Colour&) = default;
 };
 
-/// A colour ramp that falls in lightness from its low to its high end by equal perceived steps, so that it is readable
-/// with colour blindness and in greyscale. Hue in degrees and chroma of the ends in OKLCh (Ottosson 2020, "A perceptual
-/// color space for image processing").
-struct Ramp {
-    double low_hue = 0, low_chroma = 0, high_hue = 0, high_chroma = 0;
-    double low_lightness = 0.93, high_lightness = 0.30;
-
-    /// `share`: 0 (low end) to 1. Chroma is reduced where sRGB cannot show it; lightness is kept.
-    [[nodiscard]] Colour at(double share) const;
-};
+/// `share`: 0 (low end) to 1. Chroma is reduced where sRGB cannot show it; lightness is kept.
+[[nodiscard]] Colour colour_at(const Ramp& ramp, double share);
 
 /// Lightness in OKLab, 0 (black) to 1 (white).
 [[nodiscard]] double lightness(const Colour& colour);

@@ -6,7 +6,7 @@
 
 #include <fmt/format.h>
 
-#include "observe/map_names.hpp"
+#include "core/hazard_maps.hpp"
 #include "report/number_text.hpp"
 
 namespace talus::report {
@@ -18,20 +18,25 @@ std::string item(const std::string& upper_limit, const report::Colour& colour, i
                        colour.hex(), alpha, report::escape(label));
 }
 
-/// The look of one of observe::named_maps, which has its title, unit and grid.
-HazardMap map(const char* key, const char* description, std::vector<double> breaks, const report::Ramp& ramp,
-              const char* caption, int digits, const char* tab = nullptr) {
-    const observe::NamedMap& named = *observe::find_map(key);
-    HazardMap made{key, named.title, description, named.unit, named.factor, named.grid, std::move(breaks), ramp};
-    made.tab = tab != nullptr ? tab : named.title;
-    made.caption = caption;
-    made.digits = digits;
+/// One of named_maps.
+HazardMap map_of(const NamedMap& named) {
+    HazardMap made{std::string(named.key),
+                   named.title,
+                   named.description,
+                   named.unit,
+                   named.factor,
+                   named.grid,
+                   {named.breaks.begin(), named.breaks.end()},
+                   named.ramp};
+    made.tab = named.tab != nullptr ? named.tab : named.title;
+    made.caption = named.caption;
+    made.digits = named.digits;
     return made;
 }
 
 /// A map that not every run has, in m.
 HazardMap other_map(const char* file, const char* title, const char* description, std::vector<double> breaks,
-                    const report::Ramp& ramp) {
+                    const Ramp& ramp) {
     return {file, title, description, "m", 1, nullptr, std::move(breaks), ramp};
 }
 
@@ -76,24 +81,12 @@ std::string category_style(const HazardMap& map) {
 }  // namespace
 
 const std::vector<HazardMap>& hazard_maps() {
-    // Breaks at 15 and 30 kPa separate slight, extensive and complete damage to buildings not of reinforced concrete
-    // (Kang & Kim 2014); depths of 0.5 and 1 m are the limits of common intensity classes.
-    static const std::vector<HazardMap> maps = {
-        map("peak_depth", "peak flow depth, vertical", {0, 0.1, 0.25, 0.5, 1, 2, 3, 5, 10, 20},
-            {205, 0.05, 268, 0.15, 0.90, 0.28}, "Greatest vertical flow depth at each place during the run.", 2),
-        map("peak_speed", "peak depth-averaged speed", {0, 1, 2, 4, 6, 8, 10, 15, 20, 30},
-            {104, 0.11, 8, 0.13, 0.93, 0.28}, "Greatest depth-averaged speed at each place during the run.", 1),
-        map("peak_pressure", "peak dynamic pressure of the free flow, density x speed^2",
-            {0, 5, 15, 30, 50, 100, 200, 400, 800}, {88, 0.08, -48, 0.14, 0.93, 0.26},
-            "Greatest dynamic pressure of the free flow at each place: density times the square of the depth-averaged "
-            "speed.",
-            0),
-        map("arrival_time", "time of first arrival since the start of the run", {}, {215, 0.06, 118, 0.10, 0.30, 0.92},
-            "Time from the start of the run until debris first stands at each place.", 1),
-        map("deposit_depth", "deposit depth at the end of the run, vertical",
-            {0.05, 0.1, 0.25, 0.5, 1, 2, 3, 5, 10, 20}, {92, 0.07, 42, 0.09, 0.92, 0.28},
-            "Vertical depth of debris at the end of the run. Below 0.05 m nothing is drawn.", 2, "Deposit"),
-    };
+    static const std::vector<HazardMap> maps = [] {
+        std::vector<HazardMap> all;
+        all.reserve(named_maps.size());
+        for (const NamedMap& named : named_maps) all.push_back(map_of(named));
+        return all;
+    }();
     return maps;
 }
 

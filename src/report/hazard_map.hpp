@@ -17,14 +17,14 @@ struct Category {
 
 /// A map among the products: where it comes from, what it is called, how it is coloured.
 struct HazardMap {
-    std::string file;                                  ///< without extension: "peak_depth"
-    std::string title;                                 ///< "Peak depth"
-    std::string description;                           ///< of the band
-    std::string unit;                                  ///< of the band and of `breaks`
-    double factor = 1;                                 ///< from SI to `unit`
-    Grid<float> observe::HazardMaps::*grid = nullptr;  ///< nullptr: not one of a single run's maps
+    std::string file;                         ///< without extension: "peak_depth"
+    std::string title;                        ///< "Peak depth"
+    std::string description;                  ///< of the band
+    std::string unit;                         ///< of the band and of `breaks`
+    double factor = 1;                        ///< from SI to `unit`
+    Grid<float> HazardMaps::*grid = nullptr;  ///< nullptr: not one of a single run's maps
     std::vector<double> breaks;  ///< lower limits of the classes; below the first: not drawn. Empty: even classes
-    report::Ramp ramp;
+    Ramp ramp;
     double full_scale = 0;          ///< classes reach at least up to here, so that maps of a kind have the same colours
     std::vector<Colour> colours{};  ///< of the classes of `breaks`, all of them, in place of the ramp
     std::vector<Category> categories{};  ///< of the values 1, 2, ...; then breaks and ramp are not used

@@ -69,7 +69,7 @@ const IntensityGuideline& intensity_guideline(params::GuidelineChoice choice) {
     return guidelines().at(static_cast<std::size_t>(choice));
 }
 
-Grid<float> intensity_map(const IntensityGuideline& guideline, const observe::HazardMaps& maps) {
+Grid<float> intensity_map(const IntensityGuideline& guideline, const HazardMaps& maps) {
     Grid<float> classes(maps.peak_depth.geometry, std::numeric_limits<float>::quiet_NaN());
     for (std::size_t i = 0; i < classes.values.size(); ++i) {
         if (std::isnan(maps.arrival_time.values[i])) continue;

@@ -43,7 +43,7 @@ struct IntensityGuideline {
 
 /// Class numbers from 1 up wherever debris arrived; NaN elsewhere. Peak depth and peak speed need not have occurred at
 /// one moment, so that a class may be too high, not too low.
-[[nodiscard]] Grid<float> intensity_map(const IntensityGuideline& guideline, const observe::HazardMaps& maps);
+[[nodiscard]] Grid<float> intensity_map(const IntensityGuideline& guideline, const HazardMaps& maps);
 
 /// How it is written and drawn.
 [[nodiscard]] HazardMap intensity_style(const IntensityGuideline& guideline);

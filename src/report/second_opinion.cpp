@@ -49,7 +49,7 @@ std::vector<Quantity> quantities(const BothModels& models, const run::SecondOpin
     add_number("deposit_depth_m", metres(2));
     all.back().name += " that nine tenths of its area stay below";
     for (std::size_t k = 0; k < run::peak_pairs.size(); ++k) {
-        const observe::NamedMap& map = observe::peak_numbers[k].map;
+        const NamedMap& map = observe::peak_numbers[k].map;
         const run::MapPair& maps = opinion.*run::peak_pairs[k];
         const auto format = [&](int least) { return k == 0 ? metres(least) : k == 1 ? "f1" : "s3"; };
         all.push_back({map.title, map.unit, format(1), map.factor * maps.peak_particles.value,

@@ -5,7 +5,7 @@
 
 namespace talus::risk {
 
-Intensity intensity_at(const observe::HazardMaps& maps, const PlanPoint& place) {
+Intensity intensity_at(const HazardMaps& maps, const PlanPoint& place) {
     const auto number = [&](const Grid<float>& grid) {
         const float value = value_at(grid, place);
         return std::isnan(value) ? 0.0 : static_cast<double>(value);
@@ -14,7 +14,7 @@ Intensity intensity_at(const observe::HazardMaps& maps, const PlanPoint& place) 
 }
 
 RunOutcome outcome_of(const Exposures& exposures, const std::vector<observe::BuildingImpact>& buildings,
-                      const observe::HazardMaps& maps) {
+                      const HazardMaps& maps) {
     RunOutcome outcome;
     std::size_t next = 0;  // the order is that of the scene, of which an option may have removed some
     for (const ExposedBuilding& exposed : exposures.buildings) {

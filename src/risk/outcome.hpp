@@ -36,9 +36,9 @@ struct ScenarioOutcome {
 
 /// `maps`: peak depth, speed and pressure of the run.
 [[nodiscard]] RunOutcome outcome_of(const Exposures& exposures, const std::vector<observe::BuildingImpact>& buildings,
-                                    const observe::HazardMaps& maps);
+                                    const HazardMaps& maps);
 
 /// The intensity at a place; all 0 where debris did not come.
-[[nodiscard]] Intensity intensity_at(const observe::HazardMaps& maps, const PlanPoint& place);
+[[nodiscard]] Intensity intensity_at(const HazardMaps& maps, const PlanPoint& place);
 
 }  // namespace talus::risk

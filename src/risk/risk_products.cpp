@@ -24,7 +24,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-constexpr report::Ramp risk_ramp = {90, 0.06, 25, 0.17, 0.95, 0.38};
+constexpr Ramp risk_ramp = {90, 0.06, 25, 0.17, 0.95, 0.38};
 const std::vector<double> frequency_breaks = {1e-5, 3e-5, 1e-4, 3e-4, 1e-3, 3e-3, 1e-2, 3e-2, 0.1, 0.3};
 const std::vector<double> individual_breaks = {1e-7, 1e-6, 1e-5, 1e-4, 1e-3, 1e-2};
 constexpr double absent = std::numeric_limits<double>::quiet_NaN();

@@ -142,9 +142,9 @@ class MapSum {
 };
 
 /// Peak depth, speed and pressure of a run.
-Result<observe::HazardMaps> read_maps(const fs::path& file, const ensemble::RunRecord& record) {
+Result<HazardMaps> read_maps(const fs::path& file, const ensemble::RunRecord& record) {
     constexpr std::array<std::size_t, 3> wanted = {0, 1, 2};
-    observe::HazardMaps maps;
+    HazardMaps maps;
     for (const std::size_t map : wanted) {
         Grid<float>& grid = maps.*ensemble::recorded_maps[map].grid;
         grid.geometry = record.geometry;
@@ -154,7 +154,7 @@ Result<observe::HazardMaps> read_maps(const fs::path& file, const ensemble::RunR
 }
 
 /// Of each cell, the probability of death of somebody there.
-Grid<float> deaths_on(const Curve& curve, const observe::HazardMaps& maps) {
+Grid<float> deaths_on(const Curve& curve, const HazardMaps& maps) {
     Grid<float> made(maps.peak_depth.geometry, 0);
     const auto number = [](float value) { return std::isnan(value) ? 0.0 : static_cast<double>(value); };
     for (std::size_t i = 0; i < made.values.size(); ++i) {
@@ -252,7 +252,7 @@ Result<OptionOutcome> read_outcome(const Study& study, const std::string& option
                 ++made.failed;
                 continue;
             }
-            TALUS_ASSIGN(const observe::HazardMaps maps, read_maps(folder.run_file(record.run), record));
+            TALUS_ASSIGN(const HazardMaps maps, read_maps(folder.run_file(record.run), record));
             scenario.runs[record.run] = outcome_of(study.exposures, record.buildings, maps);
             debris.add(deeper_than(part.scene->spec.outputs.arrival_depth, maps.peak_depth), weight);
             if (const Curve* curve = study.exposures.map_death) individual.add(deaths_on(*curve, maps), weight);

@@ -169,7 +169,7 @@ void take_one_path(scene::Scene& scene, RunResult& particles, scene::Scene& grid
 }
 
 SecondOpinion second_opinion(const scene::Scene& scene, const RunResult& particles, const RunResult& depth_averaged) {
-    const observe::HazardMaps &p = particles.observation.maps, &d = depth_averaged.observation.maps;
+    const HazardMaps &p = particles.observation.maps, &d = depth_averaged.observation.maps;
     const GridGeometry cells = common_cells(scene, p.peak_depth.geometry, d.peak_depth.geometry);
     SecondOpinion opinion;
     opinion.depth = compare_maps(p.peak_depth, d.peak_depth, cells, MeanOf::cell);

@@ -11,8 +11,8 @@
 #include <fmt/ranges.h>
 
 #include "core/hash.hpp"
+#include "core/hazard_maps.hpp"
 #include "core/try.hpp"
-#include "observe/map_names.hpp"
 #include "run/depth_run.hpp"
 #include "run/verdict.hpp"
 #include "run/words.hpp"
@@ -65,11 +65,11 @@ messages::DepthAveragedResult DepthAveragedRun::message() const {
 }
 
 Result<Grid<float>> DepthAveragedRun::layer(const std::string& name, std::optional<double> time) const {
-    const auto map_names = observe::map_keys("depth");
+    const auto map_names = map_keys("depth");
     if (std::find(map_names.begin(), map_names.end(), name) == map_names.end()) {
         return Error{fmt::format("layer = {}: must be one of {}", shown(json(name)), fmt::join(map_names, ", "))};
     }
-    const observe::HazardMaps& maps = result.observation.maps;
+    const HazardMaps& maps = result.observation.maps;
     if (name == "depth") {
         if (!time) return known_only(maps.deposit_depth);
         auto after =
@@ -77,7 +77,7 @@ Result<Grid<float>> DepthAveragedRun::layer(const std::string& name, std::option
         if (after != moments.begin()) --after;
         return known_only(after->depth);
     }
-    Grid<float> layer = maps.*observe::find_map(name)->grid;
+    Grid<float> layer = maps.*find_map(name)->grid;
     if (name == "arrival_time" && time) {
         for (float& value : layer.values) {
             if (value > *time) value = std::numeric_limits<float>::quiet_NaN();

@@ -25,7 +25,7 @@ observe::Observation until(observe::Observation whole, double time) {
     std::erase_if(front, [&](const observe::FrontSample& sample) { return !(sample.arrival_time <= time); });
     whole.run_out = {};
     for (const observe::FrontSample& sample : front) whole.run_out.front_chainage = sample.chainage;
-    const observe::HazardMaps& maps = whole.maps;
+    const HazardMaps& maps = whole.maps;
     for (std::size_t k = 0; k < maps.peak_depth.values.size(); ++k) {
         if (!(maps.arrival_time.values[k] <= time)) {
             whole.maps.peak_depth.values[k] = std::numeric_limits<float>::quiet_NaN();
@@ -100,7 +100,7 @@ messages::DepthAveragedComparison compared(const scene::Scene& scene, const run:
     const observe::Peaks seen = measure_peaks(particles.observation.maps),
                          at_last = measure_peaks(whole.observation.maps);
     for (const observe::NamedPeak& peak : observe::peak_numbers) {
-        const observe::NamedMap& map = peak.map;
+        const NamedMap& map = peak.map;
         const double value = peak.value(at_last);
         rows.add(std::string(map.key), map.title, map.unit, map.decimals, peak.value(seen),
                  over ? value : observe::never, value);

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include "observe/map_names.hpp"
+#include "core/hazard_maps.hpp"
 
 namespace talus::twin {
 namespace {
@@ -63,7 +63,7 @@ Grid<float> past_arrival(const Grid<float>& now, double time) {
 }  // namespace
 
 std::vector<std::string_view> run_layers() {
-    std::vector<std::string_view> names = observe::map_keys("depth");
+    std::vector<std::string_view> names = map_keys("depth");
     names.insert(names.end(), {pore_pressure_layer, "erosion_depth"});
     return names;
 }

@@ -10,9 +10,9 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "core/hazard_maps.hpp"
 #include "core/number_or_null.hpp"
 #include "observe/erosion.hpp"
-#include "observe/map_names.hpp"
 #include "products/page_files.hpp"
 #include "products/products.hpp"
 #include "products/results_json.hpp"
@@ -36,8 +36,8 @@ Grid<float> present_layer(const observe::MapAccumulator& maps, const std::string
         }
         return depth;
     }
-    observe::HazardMaps peaks = maps.maps();
-    return std::move(peaks.*observe::find_map(name)->grid);
+    HazardMaps peaks = maps.maps();
+    return std::move(peaks.*find_map(name)->grid);
 }
 
 Grid<float> erosion_layer(const GridGeometry& terrain, const std::vector<float>& eroded) {

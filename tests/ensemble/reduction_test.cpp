@@ -23,8 +23,8 @@ class ReductionTest : public scene::SceneFolder {
     /// arrivals 10 times as much; deposits half.
     void write_run(std::size_t run, int first_column, const std::vector<float>& depths, double pressure = 0) const {
         const GridGeometry g{100 + 2.0 * first_column, 50, 2, static_cast<int>(depths.size()), 1};
-        observe::HazardMaps maps;
-        for (const observe::NamedMap& map : recorded_maps) maps.*map.grid = Grid<float>(g, nan_value);
+        HazardMaps maps;
+        for (const NamedMap& map : recorded_maps) maps.*map.grid = Grid<float>(g, nan_value);
         for (std::size_t i = 0; i < depths.size(); ++i) {
             maps.peak_depth.values[i] = depths[i];
             maps.peak_speed.values[i] = 2 * depths[i];

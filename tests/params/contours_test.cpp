@@ -20,7 +20,7 @@ TEST(ContoursOf, what_is_no_map_are_refused_with_the_maps) {
     const auto refused = contours_of(std::string_view("depth=1"));
     ASSERT_FALSE(refused);
     EXPECT_THAT(refused.error().message, HasSubstr("\"depth\" is no map with contours; the maps are peak_depth, "));
-    for (const char* map : contour_maps) EXPECT_THAT(refused.error().message, HasSubstr(map));
+    for (const std::string_view map : contour_maps) EXPECT_THAT(refused.error().message, HasSubstr(std::string(map)));
 }
 
 TEST(ContoursOf, what_is_no_number_above_zero_are_refused) {

@@ -18,7 +18,7 @@ using testing::Not;
 using testing::StartsWith;
 
 TEST_F(Products, maps_read_back_in_their_units) {
-    const observe::HazardMaps& maps = result_->observation.maps;
+    const HazardMaps& maps = result_->observation.maps;
     const std::tuple<const char*, const Grid<float>*, const char*, double> expected[] = {
         {"peak_depth", &maps.peak_depth, "m", 1},
         {"peak_speed", &maps.peak_speed, "m/s", 1},

@@ -21,7 +21,7 @@ TEST_F(Products, outlines_hold_what_is_deep_enough) {
     const GDALDatasetUniquePtr data(GDALDataset::Open(folder_->file("results.gpkg").c_str(), GDAL_OF_VECTOR));
     ASSERT_TRUE(data);
     const double level = scene_->spec.outputs.arrival_depth;
-    const observe::HazardMaps& maps = result_->observation.maps;
+    const HazardMaps& maps = result_->observation.maps;
     for (const auto& [name, map] :
          {std::pair{"inundation", &maps.peak_depth}, std::pair{"deposit", &maps.deposit_depth}}) {
         const auto cells = std::count_if(map->values.begin(), map->values.end(),

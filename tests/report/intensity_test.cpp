@@ -56,7 +56,7 @@ TEST(Intensity, every_guideline_says_where_it_is_from_and_gets_darker_with_sever
 TEST(Intensity, is_mapped_where_debris_arrived_and_only_there) {
     const float none = std::nanf("");
     const GridGeometry cells{0, 0, 2, 4, 1};
-    observe::HazardMaps maps;
+    HazardMaps maps;
     maps.peak_depth = maps.peak_speed = maps.arrival_time = Grid<float>(cells, none);
     maps.peak_depth.values = {1.5F, 0.5F, 0.05F, none};
     maps.peak_speed.values = {4, 4, 4, none};

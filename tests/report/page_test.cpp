@@ -16,14 +16,14 @@ using ::testing::ElementsAre;
 using test::has;
 
 TEST(ReportColour, ramps_fall_evenly_in_lightness) {
-    const report::Ramp ramp{205, 0.05, 268, 0.15, 0.90, 0.28};
+    const Ramp ramp{205, 0.05, 268, 0.15, 0.90, 0.28};
     for (int k = 0; k <= 10; ++k) {
-        EXPECT_NEAR(report::lightness(ramp.at(k / 10.0)), 0.90 - 0.062 * k, 0.01) << k;
+        EXPECT_NEAR(report::lightness(report::colour_at(ramp, k / 10.0)), 0.90 - 0.062 * k, 0.01) << k;
     }
 }
 
 TEST(ReportColour, classes_end_above_the_largest_value) {
-    const report::Ramp ramp{205, 0.05, 268, 0.15};
+    const Ramp ramp{205, 0.05, 268, 0.15};
     EXPECT_THAT(report::fixed_classes({0, 0.5, 1, 2, 5}, 1.5, ramp).breaks, ElementsAre(0, 0.5, 1));
     EXPECT_THAT(report::even_classes(38, ramp).breaks, ElementsAre(0, 5, 10, 15, 20, 25, 30, 35));
     const report::Classes classes = report::fixed_classes({0.05, 0.5, 1}, 3, ramp);

@@ -27,7 +27,7 @@ struct TwoModels {
 
     TwoModels() {
         grid.grid_cell = 1;
-        observe::HazardMaps& maps = grid.observation.maps;
+        HazardMaps& maps = grid.observation.maps;
         maps.arrival_speed = particles.observation.maps.arrival_speed = maps.peak_speed;
     }
     [[nodiscard]] run::SecondOpinion opinion() const { return second_opinion(scene, particles, grid); }
@@ -63,7 +63,7 @@ TEST(Differences, a_structure_hit_in_one_model_only_stands_before_all_else) {
 
 TEST(Differences, a_spike_of_one_cell_changes_the_peak_and_not_the_median) {
     TwoModels two;
-    observe::HazardMaps& maps = two.grid.observation.maps;
+    HazardMaps& maps = two.grid.observation.maps;
     *std::find_if(maps.peak_speed.values.begin(), maps.peak_speed.values.end(), [](float v) { return v > 0; }) = 120;
     const std::string first = two.differences().at(0);
     EXPECT_THAT(first, HasSubstr("120.0\u00a0m/s depth-averaged"));

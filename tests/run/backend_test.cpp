@@ -113,7 +113,7 @@ std::string bits_of(std::initializer_list<double> values) {
     return {reinterpret_cast<const char*>(values.begin()), values.size() * sizeof(double)};
 }
 
-void expect_same_maps(const observe::HazardMaps& a, const observe::HazardMaps& b) {
+void expect_same_maps(const HazardMaps& a, const HazardMaps& b) {
     EXPECT_EQ(a.peak_depth.geometry, b.peak_depth.geometry);
     const auto same = [](const Grid<float>& x, const Grid<float>& y) { return bits_of(x.values) == bits_of(y.values); };
     EXPECT_TRUE(same(a.peak_depth, b.peak_depth));

@@ -71,7 +71,7 @@ TEST_F(Compare, changes_are_percent_of_the_base) {
 
 TEST_F(Compare, varied_inputs_are_compared_by_their_peaks_too) {
     const auto maps = [](float depth, float speed, float pressure) {
-        observe::HazardMaps all;
+        HazardMaps all;
         for (auto [map, value] :
              {std::pair{&all.peak_depth, depth}, {&all.peak_speed, speed}, {&all.peak_pressure, pressure}}) {
             *map = Grid<float>({0, 0, 1, 2, 1}, value / 2);

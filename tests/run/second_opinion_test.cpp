@@ -25,7 +25,7 @@ scene::Scene scene_on(int columns, double cell) {
 
 RunResult with_depths(Grid<float> depths) {
     RunResult result;
-    observe::HazardMaps& maps = result.observation.maps;
+    HazardMaps& maps = result.observation.maps;
     maps = {depths, depths, depths, depths, depths, depths};
     return result;
 }

@@ -1,4 +1,4 @@
-#include "observe/map_names.hpp"
+#include "core/hazard_maps.hpp"
 
 #include <algorithm>
 #include <fstream>
@@ -14,7 +14,7 @@
 
 /// The table of maps, and the lists of other languages and layers that cannot read it: a map that is added to the
 /// table and not to them is named here.
-namespace talus::observe {
+namespace talus {
 namespace {
 
 using ::testing::HasSubstr;
@@ -35,7 +35,7 @@ std::string si_unit(const NamedMap& map) {
     return "Pa";
 }
 
-TEST(MapNames, every_map_has_a_key_of_its_own_and_is_found_by_it) {
+TEST(HazardMapTable, every_map_has_a_key_of_its_own_and_is_found_by_it) {
     std::set<std::string_view> keys;
     for (const NamedMap& map : named_maps) {
         EXPECT_TRUE(keys.insert(map.key).second) << map.key;
@@ -48,7 +48,7 @@ TEST(MapNames, every_map_has_a_key_of_its_own_and_is_found_by_it) {
     EXPECT_EQ(map_keys("depth").back(), named_maps.back().key);
 }
 
-TEST(MapNames, reports_and_files_have_every_map_in_its_order) {
+TEST(HazardMapTable, reports_and_files_have_every_map_in_its_order) {
     const std::vector<report::HazardMap>& maps = report::hazard_maps();
     ASSERT_EQ(maps.size(), named_maps.size());
     for (std::size_t k = 0; k < maps.size(); ++k) {
@@ -59,13 +59,13 @@ TEST(MapNames, reports_and_files_have_every_map_in_its_order) {
     }
 }
 
-TEST(MapNames, contours_can_be_asked_for_of_every_map) {
+TEST(HazardMapTable, contours_can_be_asked_for_of_every_map) {
     for (const NamedMap& map : named_maps) {
         EXPECT_EQ(std::count(params::contour_maps.begin(), params::contour_maps.end(), map.key), 1) << map.key;
     }
 }
 
-TEST(MapNames, the_list_of_the_c_interface_has_them) {
+TEST(HazardMapTable, the_list_of_the_c_interface_has_them) {
     const std::string header = source("apps/embed/talus.h"), code = source("apps/embed/talus_maps.cpp");
     for (const NamedMap& map : named_maps) {
         EXPECT_THAT(header, HasSubstr(fmt::format("\"{}\"", map.key)));
@@ -73,14 +73,14 @@ TEST(MapNames, the_list_of_the_c_interface_has_them) {
     }
 }
 
-TEST(MapNames, the_list_of_the_python_module_has_them_with_their_si_units) {
+TEST(HazardMapTable, the_list_of_the_python_module_has_them_with_their_si_units) {
     const std::string module = source("python/talus/maps.py");
     for (const NamedMap& map : named_maps) {
         EXPECT_THAT(module, HasSubstr(fmt::format("    \"{}\": \"{}\",\n", map.key, si_unit(map))));
     }
 }
 
-TEST(MapNames, the_lists_of_the_qgis_plugin_have_them) {
+TEST(HazardMapTable, the_lists_of_the_qgis_plugin_have_them) {
     const std::string plugin = source("qgis/talus_processing/algorithms.py");
     std::string quoted;
     for (const NamedMap& map : named_maps) quoted += fmt::format("{}\"{}\"", quoted.empty() ? "" : ", ", map.key);
@@ -88,7 +88,7 @@ TEST(MapNames, the_lists_of_the_qgis_plugin_have_them) {
     EXPECT_THAT(plugin, HasSubstr("for quantity in (" + quoted + "):")) << "of ensembles";
 }
 
-TEST(MapNames, the_description_of_the_server_has_them) {
+TEST(HazardMapTable, the_description_of_the_server_has_them) {
     std::string layers = "'depth'";
     for (const NamedMap& map : named_maps) layers += fmt::format(" | '{}'", map.key);
     const std::string protocol = source("src/messages/protocol.json");
@@ -101,12 +101,12 @@ TEST(MapNames, the_description_of_the_server_has_them) {
     }
 }
 
-TEST(MapNames, the_page_shows_them_with_the_same_titles_units_and_colours) {
+TEST(HazardMapTable, the_page_shows_them_with_the_same_titles_units_and_colours) {
     const std::string layers = source("web/src/scene/layers.ts"), colours = source("web/src/scene/colour.ts");
     for (const report::HazardMap& map : report::hazard_maps()) {
         EXPECT_THAT(layers, HasSubstr(fmt::format("  {}: {{ title: \"{}\", unit: \"{}\", ramp: ramps.{},", map.file,
                                                   map.title, map.unit, map.file)));
-        const report::Ramp& r = map.ramp;
+        const Ramp& r = map.ramp;
         EXPECT_THAT(colours,
                     HasSubstr(fmt::format("  {}: ramp({}, {}, {}, {}, {}, {}),", map.file, r.low_hue, r.low_chroma,
                                           r.high_hue, r.high_chroma, r.low_lightness, r.high_lightness)));
@@ -114,4 +114,4 @@ TEST(MapNames, the_page_shows_them_with_the_same_titles_units_and_colours) {
 }
 
 }  // namespace
-}  // namespace talus::observe
+}  // namespace talus
