@@ -1,46 +1,34 @@
 // The functions of talus.h that read maps.
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "core/hazard_maps.hpp"
 #include "grid_geometry.hpp"
 #include "names.hpp"
 #include "twin/results.hpp"
 
 namespace {
 
+using talus::MapKind;
+
 constexpr float no_value = std::numeric_limits<float>::quiet_NaN();
 
-/// How the values of several cells become one: depths keep their volume, peaks and arrivals stay on the safe side.
-enum class Several { mean, largest, smallest };
-
-struct Layer {
-    const char* name;
-    Several several;
-};
-constexpr std::array layers{Layer{"depth", Several::mean},
-                            Layer{"speed", Several::largest},
-                            Layer{"peak_depth", Several::largest},
-                            Layer{"peak_speed", Several::largest},
-                            Layer{"peak_pressure", Several::largest},
-                            Layer{"arrival_time", Several::smallest},
-                            Layer{"deposit_depth", Several::mean},
-                            Layer{"erosion_depth", Several::mean}};
-
-Result<Layer> layer_named(const std::string& name) {
-    std::vector<std::string> names;
-    for (const Layer& layer : layers) {
-        if (name == layer.name) return layer;
-        names.emplace_back(layer.name);
-    }
-    return Error{fmt::format("name = \"{}\": must be one of {}", name, fmt::join(names, ", "))};
+/// Several cells become one by the kind of their map: depths keep their volume, peaks and arrivals stay on the safe
+/// side.
+Result<MapKind> kind_of(std::string_view name) {
+    if (name == "depth" || name == "erosion_depth") return MapKind::present;
+    if (name == "speed") return MapKind::peak;
+    if (const talus::NamedMap* map = talus::find_map(name)) return map->kind;
+    return Error{fmt::format("name = \"{}\": must be one of depth, {}", name,
+                             fmt::join(talus::map_keys("speed", "erosion_depth"), ", "))};
 }
 
 /// Where there is debris.
@@ -52,9 +40,9 @@ Grid<float> present_speed(const Scenario& scenario) {
     return std::move(present.speed);
 }
 
-Result<Grid<float>> read_layer(const Scenario& scenario, const Layer& layer) {
-    if (layer.name == std::string("speed")) return present_speed(scenario);
-    TALUS_ASSIGN(const auto read, talus::twin::layer_of(scenario, layer.name));
+Result<Grid<float>> read_layer(const Scenario& scenario, const std::string& name) {
+    if (name == "speed") return present_speed(scenario);
+    TALUS_ASSIGN(const auto read, talus::twin::layer_of(scenario, name));
     return read();
 }
 
@@ -66,14 +54,14 @@ bool cell_at(const GridGeometry& to, const talus::PlanPoint& p, std::size_t& cel
     return true;
 }
 
-void add(float value, Several several, float& sum) {
+void add(float value, MapKind kind, float& sum) {
     if (std::isnan(value)) return;
     if (std::isnan(sum)) {
         sum = value;
-    } else if (several == Several::mean) {
+    } else if (kind == MapKind::present) {
         sum += value;
     } else {
-        sum = several == Several::largest ? std::max(sum, value) : std::min(sum, value);
+        sum = kind == MapKind::peak ? std::max(sum, value) : std::min(sum, value);
     }
 }
 
@@ -100,7 +88,7 @@ Centres centres_in(double from, double cell, int count, double x_min, double spa
     return centres;
 }
 
-Grid<float> on_cells(const Grid<float>& from, Several several, const GridGeometry& wanted) {
+Grid<float> on_cells(const Grid<float>& from, MapKind kind, const GridGeometry& wanted) {
     Grid<float> to(wanted, no_value);
     if (from.values.empty()) return to;
     const GridGeometry& g = from.geometry;
@@ -110,7 +98,7 @@ Grid<float> on_cells(const Grid<float>& from, Several several, const GridGeometr
         const int to_row = rows.wanted[static_cast<std::size_t>(row)];
         for (int column = 0; to_row >= 0 && column < g.columns; ++column) {
             const int to_column = columns.wanted[static_cast<std::size_t>(column)];
-            if (to_column >= 0) add(from.at(column, row), several, to.at(to_column, to_row));
+            if (to_column >= 0) add(from.at(column, row), kind, to.at(to_column, to_row));
         }
     }
     // A mean is over all cells of the map that there would be, had it no edges: beyond them there is no debris.
@@ -122,7 +110,7 @@ Grid<float> on_cells(const Grid<float>& from, Several several, const GridGeometr
                 columns.count[static_cast<std::size_t>(column)] * rows.count[static_cast<std::size_t>(row)];
             if (!(centres > 0)) {
                 value = cell_at(g, wanted.centre(column, row), cell) ? from.values[cell] : no_value;
-            } else if (several == Several::mean) {
+            } else if (kind == MapKind::present) {
                 value = static_cast<float>(value / centres);
             }
         }
@@ -147,8 +135,8 @@ int talus_get_map(const talus_simulation* simulation, const char* name, talus_ma
         auto& maps = simulation->answers.maps;
         auto found = maps.find(name);
         if (found == maps.end()) {
-            TALUS_ASSIGN(const Layer layer, layer_named(name));
-            TALUS_ASSIGN(const Grid<float> grid, read_layer(*simulation->scenario, layer));
+            TALUS_TRY(kind_of(name));
+            TALUS_ASSIGN(const Grid<float> grid, read_layer(*simulation->scenario, name));
             found = maps.emplace(name, Answers::Map{grid.geometry, buffer_of(grid.values)}).first;
         }
         give_map(found->second, map);
@@ -163,15 +151,15 @@ int talus_get_map_on(const talus_simulation* simulation, const char* name, const
         TALUS_TRY(need(name, "name"));
         TALUS_TRY(need(grid, "grid"));
         TALUS_TRY(check_size(map, "map"));
-        TALUS_ASSIGN(const Layer layer, layer_named(name));
+        TALUS_ASSIGN(const MapKind kind, kind_of(name));
         TALUS_ASSIGN(const GridGeometry wanted, talus::embed::geometry_of(*grid, 1));
         auto& maps = simulation->answers.maps;
         const std::string key = fmt::format("{} {} {} {} {} {}", name, wanted.x_min, wanted.y_min, wanted.cell,
                                             wanted.columns, wanted.rows);
         auto found = maps.find(key);
         if (found == maps.end()) {
-            TALUS_ASSIGN(const Grid<float> read, read_layer(*simulation->scenario, layer));
-            const Grid<float> made = on_cells(read, layer.several, wanted);
+            TALUS_ASSIGN(const Grid<float> read, read_layer(*simulation->scenario, name));
+            const Grid<float> made = on_cells(read, kind, wanted);
             found = maps.emplace(key, Answers::Map{wanted, buffer_of(made.values)}).first;
         }
         give_map(found->second, map);

@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "core/hazard_maps.hpp"
 #include "core/try.hpp"
 #include "geo/vector.hpp"
 #include "params/contours.hpp"
@@ -46,7 +47,8 @@ Status write_contours(const scene::Scene& scene, const run::RunResult& result, c
     for (const params::MapContours& contours : wanted) {
         ContourMap map = contour_map(contours.map, scene, result.observation);
         // Without debris there is none of it: lines close around what it reached. When debris came has no such value.
-        if (contours.map != "arrival_time") {
+        const NamedMap* named = find_map(contours.map);
+        if (named == nullptr || named->kind != MapKind::arrival) {
             for (float& value : map.values.values) value = std::isnan(value) ? 0 : value;
         }
         std::vector<geo::OutputFeature> features;

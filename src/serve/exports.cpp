@@ -1,12 +1,12 @@
 #include "serve/exports.hpp"
 
 #include <algorithm>
-#include <iterator>
 #include <system_error>
 #include <vector>
 
 #include <fmt/format.h>
 
+#include "core/hazard_maps.hpp"
 #include "core/try.hpp"
 #include "geo/longitude_latitude.hpp"
 #include "geo/vector.hpp"
@@ -30,59 +30,70 @@ namespace fs = std::filesystem;
 enum class Needs { nothing, erosion, gauges, globe, source };
 
 struct ExportFile {
-    const char *name = nullptr, *type = nullptr, *what = nullptr;
+    std::string name;
+    const char* type = nullptr;
+    std::string what;
     Needs needs = Needs::nothing;
 };
+
+constexpr const char *geotiff = "image/tiff", *qgis_style = "application/xml", *style_of_it = "QGIS style of it";
 
 constexpr const char* scene_zip = "scene.zip";
 
 constexpr const char* twin_what =
     "Twin in one file: all runs of this session in a page that opens in any browser, without program or network";
 
-// The files of a run; requested names are checked against these, so none leads out of the folder.
-constexpr ExportFile export_files[] = {
-    {"report.html", "text/html", "Report with maps, plots and tables, for the browser and for paper"},
-    {"results.json", "application/json", "What the report shows, as data: key figures, tables, curves"},
-    {products::front_csv.name, "text/csv", products::front_csv.what},
-    {products::run_out_csv.name, "text/csv", products::run_out_csv.what},
-    {products::buildings_csv.name, "text/csv", products::buildings_csv.what},
-    {products::structures_csv.name, "text/csv", products::structures_csv.what},
-    {products::timeseries_csv.name, "text/csv", products::timeseries_csv.what},
-    {"results.gpkg", "application/geopackage+sqlite3",
-     "Release areas, buildings, intensity, flow path and front for a GIS"},
-    {products::gauges_csv.name, "text/csv", products::gauges_csv.what, Needs::gauges},
-    {"results.qlr", "application/xml", "Opens all layers in QGIS, styled"},
-    {"results.kml", "application/vnd.google-earth.kml+xml",
-     "Inundation, arrival times and structures hit, for Google Earth and phones", Needs::globe},
-    {"stac_item.json", "application/geo+json", "Place, time, software and files, for catalogues of geodata"},
-    {scene_zip, "application/zip", "The scene and its files with the changes of this scenario, for talus run",
-     Needs::source},
-    {"manifest.json", "application/json", "All parameters, versions, checksums and the result's hash"},
-    {"peak_depth.tif", "image/tiff", "Peak depth, m"},
-    {"peak_depth.qml", "application/xml", "QGIS style of it"},
-    {"peak_speed.tif", "image/tiff", "Peak speed, m/s"},
-    {"peak_speed.qml", "application/xml", "QGIS style of it"},
-    {"peak_pressure.tif", "image/tiff", "Peak dynamic pressure, kPa"},
-    {"peak_pressure.qml", "application/xml", "QGIS style of it"},
-    {"arrival_time.tif", "image/tiff", "First arrival, s"},
-    {"arrival_time.qml", "application/xml", "QGIS style of it"},
-    {"deposit_depth.tif", "image/tiff", "Depth of the debris now, m"},
-    {"deposit_depth.qml", "application/xml", "QGIS style of it"},
-    {"intensity.tif", "image/tiff", "Classes of intensity after a guideline"},
-    {"intensity.qml", "application/xml", "QGIS style of it"},
-    {"terrain.tif", "image/tiff", "Elevation of the terrain, m"},
-    {"terrain.qml", "application/xml", "QGIS style of it: hillshade"},
-    {"peak_thickness.tif", "image/tiff", "Peak flow thickness normal to the slope, m", Needs::erosion},
-    {"peak_thickness.qml", "application/xml", "QGIS style of it", Needs::erosion},
-    {"erosion_depth.tif", "image/tiff", "Depth of erosion of the bed, m", Needs::erosion},
-    {"erosion_depth.qml", "application/xml", "QGIS style of it", Needs::erosion},
-    {products::erosion_csv.name, "text/csv", products::erosion_csv.what, Needs::erosion},
-};
+std::vector<ExportFile> make_export_files() {
+    std::vector<ExportFile> files = {
+        {"report.html", "text/html", "Report with maps, plots and tables, for the browser and for paper"},
+        {"results.json", "application/json", "What the report shows, as data: key figures, tables, curves"},
+        {products::front_csv.name, "text/csv", products::front_csv.what},
+        {products::run_out_csv.name, "text/csv", products::run_out_csv.what},
+        {products::buildings_csv.name, "text/csv", products::buildings_csv.what},
+        {products::structures_csv.name, "text/csv", products::structures_csv.what},
+        {products::timeseries_csv.name, "text/csv", products::timeseries_csv.what},
+        {"results.gpkg", "application/geopackage+sqlite3",
+         "Release areas, buildings, intensity, flow path and front for a GIS"},
+        {products::gauges_csv.name, "text/csv", products::gauges_csv.what, Needs::gauges},
+        {"results.qlr", "application/xml", "Opens all layers in QGIS, styled"},
+        {"results.kml", "application/vnd.google-earth.kml+xml",
+         "Inundation, arrival times and structures hit, for Google Earth and phones", Needs::globe},
+        {"stac_item.json", "application/geo+json", "Place, time, software and files, for catalogues of geodata"},
+        {scene_zip, "application/zip", "The scene and its files with the changes of this scenario, for talus run",
+         Needs::source},
+        {"manifest.json", "application/json", "All parameters, versions, checksums and the result's hash"},
+    };
+    for (const NamedMap& map : named_maps) {
+        const std::string key(map.key);
+        const char* title = map.title_so_far != nullptr ? map.title_so_far : map.title;
+        files.push_back({key + ".tif", geotiff, fmt::format("{}, {}", title, map.unit)});
+        files.push_back({key + ".qml", qgis_style, style_of_it});
+    }
+    files.insert(files.end(),
+                 {
+                     {"intensity.tif", geotiff, "Classes of intensity after a guideline"},
+                     {"intensity.qml", qgis_style, style_of_it},
+                     {"terrain.tif", geotiff, "Elevation of the terrain, m"},
+                     {"terrain.qml", qgis_style, "QGIS style of it: hillshade"},
+                     {"peak_thickness.tif", geotiff, "Peak flow thickness normal to the slope, m", Needs::erosion},
+                     {"peak_thickness.qml", qgis_style, style_of_it, Needs::erosion},
+                     {"erosion_depth.tif", geotiff, "Depth of erosion of the bed, m", Needs::erosion},
+                     {"erosion_depth.qml", qgis_style, style_of_it, Needs::erosion},
+                     {products::erosion_csv.name, "text/csv", products::erosion_csv.what, Needs::erosion},
+                 });
+    return files;
+}
+
+/// The files of a run; requested names are checked against these, so none leads out of the folder.
+const std::vector<ExportFile>& export_files() {
+    static const std::vector<ExportFile> files = make_export_files();
+    return files;
+}
 
 const ExportFile* find_file(const std::string& name) {
-    const auto found = std::find_if(std::begin(export_files), std::end(export_files),
-                                    [&](const ExportFile& f) { return name == f.name; });
-    return found == std::end(export_files) ? nullptr : found;
+    const std::vector<ExportFile>& files = export_files();
+    const auto found = std::find_if(files.begin(), files.end(), [&](const ExportFile& f) { return name == f.name; });
+    return found == files.end() ? nullptr : &*found;
 }
 
 /// Why a run has no such file; empty: it has one.
@@ -105,7 +116,7 @@ std::string why_none(const ExportFile& file, const twin::Scenario& run, const ru
 
 std::vector<const ExportFile*> files_of(const twin::Scenario& run, const run::SceneSource& source) {
     std::vector<const ExportFile*> files;
-    for (const ExportFile& file : export_files) {
+    for (const ExportFile& file : export_files()) {
         if (why_none(file, run, source).empty()) files.push_back(&file);
     }
     return files;

@@ -77,8 +77,9 @@ Result<Grid<float>> DepthAveragedRun::layer(const std::string& name, std::option
         if (after != moments.begin()) --after;
         return known_only(after->depth);
     }
-    Grid<float> layer = maps.*find_map(name)->grid;
-    if (name == "arrival_time" && time) {
+    const NamedMap& named = *find_map(name);
+    Grid<float> layer = maps.*named.grid;
+    if (named.kind == MapKind::arrival && time) {
         for (float& value : layer.values) {
             if (value > *time) value = std::numeric_limits<float>::quiet_NaN();
         }

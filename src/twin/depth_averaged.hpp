@@ -41,9 +41,8 @@ struct DepthAveragedRun {
     double processor_time = 0;       ///< s
 
     [[nodiscard]] messages::DepthAveragedResult message() const;
-    /// `depth`, `peak_depth`, `peak_speed`, `peak_pressure`, `arrival_time`, `deposit_depth` on its own cells; NaN: no
-    /// value. SI units. Depth at a time, s, or at the end; arrivals until a time; the others are of the whole run.
-    /// Error: no such layer.
+    /// `depth` or one of named_maps on its own cells; NaN: no value. SI units. Depth at a time, s, or at the end;
+    /// arrivals until a time; the others are of the whole run. Error: no such layer.
     [[nodiscard]] Result<Grid<float>> layer(const std::string& name, std::optional<double> time = {}) const;
 };
 

@@ -44,12 +44,10 @@ void for_each_cell(const Frame& frame, const GridGeometry& map, const GridGeomet
     }
 }
 
-/// The value of a layer for one frame's debris in a cell; below 0: none.
-double value_of(const std::string& name, const DebrisAt& debris) {
-    if (name == "peak_speed") return debris.speed;
-    if (name == pore_pressure_layer) return debris.pore_pressure_ratio;
-    if (name == "peak_pressure") return debris.density * debris.speed * debris.speed;
-    return debris.depth;
+/// The value of a layer for one frame's debris in a cell; `named`: nullptr where it is none of the maps.
+double value_of(const std::string& name, const NamedMap* named, const DebrisAt& debris) {
+    if (named != nullptr) return named->value({debris.depth, debris.speed, debris.density});
+    return name == pore_pressure_layer ? debris.pore_pressure_ratio : debris.depth;
 }
 
 Grid<float> past_arrival(const Grid<float>& now, double time) {
@@ -70,10 +68,11 @@ std::vector<std::string_view> run_layers() {
 
 Grid<float> past_layer(const std::string& name, const std::vector<FramePtr>& frames, const MapFrame& map) {
     if (frames.empty()) return Grid<float>({map.geometry.x_min, map.geometry.y_min, map.geometry.cell, 1, 1}, nothing);
-    if (name == "arrival_time") return past_arrival(map.arrival_now, frames.back()->time);
+    const NamedMap* named = find_map(name);
+    if (named != nullptr && named->kind == MapKind::arrival) return past_arrival(map.arrival_now, frames.back()->time);
     Grid<float> layer(common_window(frames, map.geometry), nothing);
     // "depth" and the pore pressure are those of the last frame; so is the deposit depth, wherever debris has been.
-    const bool peaks = name.starts_with("peak_"), now_alone = name == "depth" || name == pore_pressure_layer;
+    const bool now_alone = named == nullptr, peaks = !now_alone && named->kind == MapKind::peak;
     for (const FramePtr& frame : frames) {
         const bool last = frame == frames.back();
         if (now_alone && !last) continue;
@@ -83,7 +82,7 @@ Grid<float> past_layer(const std::string& name, const std::vector<FramePtr>& fra
             if (debris.depth >= map.thinnest && !now_alone && std::isnan(value)) value = 0;
             if (!peaks && !last) return;
             if (!now_alone && std::isnan(value)) return;
-            const auto now = static_cast<float>(value_of(name, debris));
+            const auto now = static_cast<float>(value_of(name, named, debris));
             value = std::isnan(value) ? now : std::max(value, now);
         });
     }

@@ -104,7 +104,8 @@ Result<std::function<Grid<float>()>> layer_of(const Scenario& scenario, const st
     if (name == pore_pressure_layer && !time) frames = {run.frame(1, 0)};
     if (frames.empty()) return std::function<Grid<float>()>([grid = present_layer(maps, name)] { return grid; });
     MapFrame frame{maps.geometry(), maps.thinnest_depth(), {}};
-    if (name == "arrival_time") frame.arrival_now = maps.maps().arrival_time;
+    const NamedMap* named = find_map(name);
+    if (named != nullptr && named->kind == MapKind::arrival) frame.arrival_now = maps.maps().*named->grid;
     return std::function<Grid<float>()>(
         [name, frames = std::move(frames), frame = std::move(frame)] { return past_layer(name, frames, frame); });
 }

@@ -1,6 +1,5 @@
 #include "core/hazard_maps.hpp"
 
-#include <algorithm>
 #include <fstream>
 #include <set>
 #include <sstream>
@@ -9,7 +8,6 @@
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 
-#include "params/contours.hpp"
 #include "report/hazard_map.hpp"
 
 /// The table of maps, and the lists of other languages and layers that cannot read it: a map that is added to the
@@ -59,17 +57,10 @@ TEST(HazardMapTable, reports_and_files_have_every_map_in_its_order) {
     }
 }
 
-TEST(HazardMapTable, contours_can_be_asked_for_of_every_map) {
-    for (const NamedMap& map : named_maps) {
-        EXPECT_EQ(std::count(params::contour_maps.begin(), params::contour_maps.end(), map.key), 1) << map.key;
-    }
-}
-
 TEST(HazardMapTable, the_list_of_the_c_interface_has_them) {
-    const std::string header = source("apps/embed/talus.h"), code = source("apps/embed/talus_maps.cpp");
+    const std::string header = source("apps/embed/talus.h");
     for (const NamedMap& map : named_maps) {
         EXPECT_THAT(header, HasSubstr(fmt::format("\"{}\"", map.key)));
-        EXPECT_THAT(code, HasSubstr(fmt::format("Layer{{\"{}\",", map.key)));
     }
 }
 
@@ -94,11 +85,6 @@ TEST(HazardMapTable, the_description_of_the_server_has_them) {
     const std::string protocol = source("src/messages/protocol.json");
     EXPECT_THAT(protocol, HasSubstr("\"is\": \"" + layers + " | 'pore_pressure_ratio' | 'erosion_depth'\""));
     EXPECT_THAT(protocol, HasSubstr("\"is\": \"" + layers + "\"")) << "of the depth-averaged model";
-    const std::string exports = source("src/serve/exports.cpp");
-    for (const NamedMap& map : named_maps) {
-        EXPECT_THAT(exports, HasSubstr(fmt::format("{{\"{}.tif\",", map.key)));
-        EXPECT_THAT(exports, HasSubstr(fmt::format("{{\"{}.qml\",", map.key)));
-    }
 }
 
 TEST(HazardMapTable, the_page_shows_them_with_the_same_titles_units_and_colours) {
