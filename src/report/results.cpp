@@ -184,7 +184,7 @@ Json key_figures(const scene::Scene& scene, const run::RunResult& result) {
     }
     all.push_back(key_figure("buildings_hit", "Buildings hit", hits.hit, "f0", fmt::format("of {}", hits.all),
                              hits_note, hits.hit > 0));
-    const auto [depth, speed, pressure] = measure_peaks(o.maps);
+    const auto [depth, speed, pressure] = observe::measure_peaks(o.maps);
     const auto& [of_depth, of_speed, of_pressure] = observe::peak_numbers;
     add(of_depth.key, of_depth.map.title, depth.value, fmt::format("f{}", length_decimals(scene, 1)), "m",
         place_of(scene, depth));

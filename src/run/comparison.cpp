@@ -272,7 +272,8 @@ std::string Comparison::verdict_text() const {
 
 Comparison compare(ComparisonKind kind, const scene::Scene& scene, const RunResult& base,
                    std::vector<VariantRun> runs) {
-    const std::vector<Measure> all = measures(kind, scene, base.observation, measure_peaks(base.observation.maps));
+    const std::vector<Measure> all =
+        measures(kind, scene, base.observation, observe::measure_peaks(base.observation.maps));
     Comparison comparison;
     comparison.kind = kind;
     for (const Measure& m : all) comparison.quantities.push_back(m.quantity);

@@ -163,7 +163,7 @@ VariantRun run_variant(const SceneSource& source, const Variant& variant, const 
     } else if (result->status == RunStatus::fault) {
         run.missing = "fault " + result->stop_reason;
     } else {
-        run.peaks = measure_peaks(result->observation.maps);
+        run.peaks = observe::measure_peaks(result->observation.maps);
         result->observation.maps = {};
         result->observation.timeseries = {};
         run.result = *std::move(result);

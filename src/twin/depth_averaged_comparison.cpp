@@ -97,8 +97,8 @@ messages::DepthAveragedComparison compared(const scene::Scene& scene, const run:
     rows.add("affected_area", "Affected area", "m2", 0, now.both + now.only_first, now.both + now.only_second,
              at_end.both + at_end.only_second);
     // Maps of peaks are of whole runs.
-    const observe::Peaks seen = measure_peaks(particles.observation.maps),
-                         at_last = measure_peaks(whole.observation.maps);
+    const observe::Peaks seen = observe::measure_peaks(particles.observation.maps),
+                         at_last = observe::measure_peaks(whole.observation.maps);
     for (const observe::NamedPeak& peak : observe::peak_numbers) {
         const NamedMap& map = peak.map;
         const double value = peak.value(at_last);

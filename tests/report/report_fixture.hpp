@@ -294,7 +294,7 @@ inline run::VariantRun sample_variant(const run::RunResult& base, const std::str
                                       const std::string& override_text, double pace) {
     run::VariantRun run{{.name = name, .overrides = {override_text}}, base, ""};
     observe::Observation& o = run.result->observation;
-    run.peaks = measure_peaks(o.maps);
+    run.peaks = observe::measure_peaks(o.maps);
     run.peaks.speed.value *= pace;
     run.peaks.pressure.value *= pace * pace;
     o.maps = {};

@@ -81,7 +81,7 @@ TEST_F(Compare, varied_inputs_are_compared_by_their_peaks_too) {
     };
     base.observation.maps = maps(2, 10, 200e3F);
     add("wet", observed(10, 12, 200));
-    runs.back().peaks = measure_peaks(maps(3, 26.5F, 400e3F));
+    runs.back().peaks = observe::measure_peaks(maps(3, 26.5F, 400e3F));
     const Comparison c = compared(ComparisonKind::sensitivity);
     const auto& changes = c.rows.at(0).changes;
     EXPECT_NEAR(changes[5].percent, 50, 1e-6);
