@@ -7,6 +7,7 @@
 
 #include <fmt/format.h>
 
+#include "core/hazard_maps.hpp"
 #include "core/try.hpp"
 
 namespace talus::serve {
@@ -21,6 +22,15 @@ constexpr std::array<std::pair<std::string_view, Kind>, 6> words = {{{"number", 
                                                                      {"null", Kind::null},
                                                                      {"object", Kind::object}}};
 
+/// `maps` is one alternative per map of a run.
+void add_alternative(Type& all, Type part) {
+    if (part.kind != Kind::name || part.name != "maps") {
+        all.parts.push_back(std::move(part));
+        return;
+    }
+    for (const NamedMap& map : named_maps) all.parts.push_back(of_kind(Kind::text, std::string(map.key)));
+}
+
 /// Reads a type from the front of what is left of a text.
 class Reader {
   public:
@@ -30,10 +40,10 @@ class Reader {
         TALUS_ASSIGN(Type first, with_brackets());
         if (!take("|")) return first;
         Type all = of_kind(Kind::either);
-        all.parts.push_back(std::move(first));
+        add_alternative(all, std::move(first));
         do {
             TALUS_ASSIGN(Type next, with_brackets());
-            all.parts.push_back(std::move(next));
+            add_alternative(all, std::move(next));
         } while (take("|"));
         return all;
     }

@@ -12,6 +12,7 @@
 /// The notation of types in protocol.json. It is near TypeScript's: `number | null`, `Point[][]`, `[number, number]`,
 /// `'held' | 'released'`, `Record<string, number>`, `Partial<Draft>`, `{ viewer: string; controller?: string }`, with
 /// `integer` for a whole number and bounds in brackets: `integer(1..2000)`, and of a list's length `Point[](2..200)`.
+/// Among alternatives `maps` stands for the keys of all maps of a run (core/hazard_maps.hpp).
 namespace talus::serve {
 
 struct Field;

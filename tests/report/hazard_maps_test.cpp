@@ -79,25 +79,5 @@ TEST(HazardMapTable, the_lists_of_the_qgis_plugin_have_them) {
     EXPECT_THAT(plugin, HasSubstr("for quantity in (" + quoted + "):")) << "of ensembles";
 }
 
-TEST(HazardMapTable, the_description_of_the_server_has_them) {
-    std::string layers = "'depth'";
-    for (const NamedMap& map : named_maps) layers += fmt::format(" | '{}'", map.key);
-    const std::string protocol = source("src/messages/protocol.json");
-    EXPECT_THAT(protocol, HasSubstr("\"is\": \"" + layers + " | 'pore_pressure_ratio' | 'erosion_depth'\""));
-    EXPECT_THAT(protocol, HasSubstr("\"is\": \"" + layers + "\"")) << "of the depth-averaged model";
-}
-
-TEST(HazardMapTable, the_page_shows_them_with_the_same_titles_units_and_colours) {
-    const std::string layers = source("web/src/scene/layers.ts"), colours = source("web/src/scene/colour.ts");
-    for (const report::HazardMap& map : report::hazard_maps()) {
-        EXPECT_THAT(layers, HasSubstr(fmt::format("  {}: {{ title: \"{}\", unit: \"{}\", ramp: ramps.{},", map.file,
-                                                  map.title, map.unit, map.file)));
-        const Ramp& r = map.ramp;
-        EXPECT_THAT(colours,
-                    HasSubstr(fmt::format("  {}: ramp({}, {}, {}, {}, {}, {}),", map.file, r.low_hue, r.low_chroma,
-                                          r.high_hue, r.high_chroma, r.low_lightness, r.high_lightness)));
-    }
-}
-
 }  // namespace
 }  // namespace talus

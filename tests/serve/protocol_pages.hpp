@@ -12,6 +12,9 @@ namespace talus::test {
 /// The module web/src/protocol/GROUP.ts.
 [[nodiscard]] std::string protocol_typescript(const serve::Protocol& all, const std::string& group);
 
+/// web/src/protocol/maps.ts: the page's part of the table of maps.
+[[nodiscard]] std::string maps_typescript();
+
 /// src/messages/messages.hpp and messages.cpp: the messages that the server sends.
 [[nodiscard]] std::string protocol_header(const serve::Protocol& all);
 [[nodiscard]] std::string protocol_writers(const serve::Protocol& all);

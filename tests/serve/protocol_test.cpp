@@ -12,6 +12,7 @@ namespace {
 
 using serve::parse_type;
 using ::testing::HasSubstr;
+using ::testing::StartsWith;
 
 std::string read_file(const std::string& path) {
     std::ifstream file(path);
@@ -42,6 +43,10 @@ TEST(Protocol, the_committed_types_of_the_page_are_those_of_the_description) {
         expect_committed(std::string("web/src/protocol/") + group + ".ts",
                          protocol_typescript(serve::protocol(), group));
     }
+}
+
+TEST(Protocol, the_committed_maps_of_the_page_are_those_of_their_table) {
+    expect_committed("web/src/protocol/maps.ts", maps_typescript());
 }
 
 TEST(Protocol, the_committed_messages_of_the_program_are_those_of_the_description) {
@@ -93,6 +98,7 @@ TEST(TypeNotation, is_written_again_as_typescript) {
         EXPECT_EQ(typescript_of(*type), text);
     }
     EXPECT_EQ(typescript_of(*parse_type("'held' | 'released'")), "\"held\" | \"released\"");
+    EXPECT_THAT(typescript_of(*parse_type("'depth' | maps")), StartsWith("\"depth\" | \"peak_depth\" | \""));
     const auto bounded = parse_type("Point[](2..200)");
     ASSERT_TRUE(bounded);
     EXPECT_EQ(bounded->bounds, std::pair(2.0, 200.0));

@@ -1,9 +1,11 @@
 #include <algorithm>
+#include <array>
 #include <cctype>
 #include <set>
 
 #include <fmt/format.h>
 
+#include "core/hazard_maps.hpp"
 #include "params/fields.hpp"
 #include "serve/protocol_pages.hpp"
 
@@ -136,6 +138,26 @@ std::string protocol_typescript(const Protocol& all, const std::string& group) {
     }
     return "// Made from src/messages/protocol.json: edit that; docs/protocol.md tells how this is made again.\n" +
            import_of(others, "messages") + import_of(values, "schema") + text;
+}
+
+std::string maps_typescript() {
+    constexpr std::array<std::string_view, 3> kinds = {"peak", "arrival", "present"};
+    std::string text =
+        "// Made from src/core/hazard_maps.hpp: edit that; docs/protocol.md tells how this is made again.\n\n"
+        "/** The maps that every run has. `factor`: from what the server sends to `unit`; below `least`, in `unit`, "
+        "nothing is drawn. */\nexport const maps = {\n";
+    for (const NamedMap& map : named_maps) {
+        const Ramp& r = map.ramp;
+        text +=
+            fmt::format("  {}: {{\n    title: \"{}\", unit: \"{}\", factor: {}, kind: \"{}\", least: {},\n", map.key,
+                        map.title, map.unit, map.factor, kinds[static_cast<std::size_t>(map.kind)], map.least);
+        text += fmt::format(
+            "    ramp: {{ lowHue: {}, lowChroma: {}, highHue: {}, highChroma: {}, lowLightness: {}, highLightness: {} "
+            "}},\n"
+            "    help: \"{}\",\n  }},\n",
+            r.low_hue, r.low_chroma, r.high_hue, r.high_chroma, r.low_lightness, r.high_lightness, map.help);
+    }
+    return text + "} as const;\nexport type MapName = keyof typeof maps;\n";
 }
 
 }  // namespace talus::test

@@ -34,10 +34,9 @@ describe("the side of a house from which it is seen", () => {
 
 describe("colours", () => {
   it("of debris and houses are not those of a layer under them, which has another scale", () => {
-    const layers: unknown[] = Object.values(layerInfo).map((layer) => layer.ramp);
+    const texts = [...Object.values(ramps), ...Object.values(layerInfo).map((layer) => layer.ramp)].map((ramp) => JSON.stringify(ramp));
     for (const name of ["speed", "surface_depth", "impact_pressure"] as const) {
-      expect(layers).not.toContain(ramps[name]);
-      expect(Object.values(ramps).filter((ramp) => JSON.stringify(ramp) === JSON.stringify(ramps[name]))).toHaveLength(1);
+      expect(texts.filter((text) => text === JSON.stringify(ramps[name]))).toHaveLength(1);
     }
   });
 });

@@ -2,12 +2,12 @@ import { describe, expect, it } from "vitest";
 import type { Grid } from "../src/protocol/grid";
 import type { Ensemble, EnsembleMap } from "../src/protocol/messages";
 import { divergingAt, hex, lightness, rampAt, ramps, roundStep } from "../src/scene/colour";
-import { colourOf, differenceOf, ensembleLayer, ensembleTitle, findMap, infoOf, inUnit, rangeOfMap, scaleEnd, shownOfMap, shownValues } from "../src/scene/layers";
+import { colourOf, differenceOf, ensembleLayer, ensembleTitle, findMap, infoOf, inUnit, layerInfo, rangeOfMap, scaleEnd, shownOfMap, shownValues } from "../src/scene/layers";
 
 const grid = (...values: number[]): Grid => ({ west: 0, south: 0, cell: 1, columns: values.length, rows: 1, values: Float32Array.from(values) });
 
 describe("colour ramps", () => {
-  it.each(Object.entries(ramps))("%s: lightness goes one way, in even steps", (_, ramp) => {
+  it.each([...Object.entries(ramps), ...Object.entries(layerInfo).map(([name, layer]) => [name, layer.ramp] as const)])("%s: lightness goes one way, in even steps", (_, ramp) => {
     const steps = Array.from({ length: 33 }, (_unused, k) => lightness(rampAt(ramp, k / 32)));
     const way = Math.sign(steps[32] - steps[0]);
     const mean = (steps[32] - steps[0]) / 32;
@@ -69,7 +69,7 @@ describe("maps of an ensemble", () => {
     expect(findMap([], name)).toBeNull();
     expect(ensembleTitle(ensemble)).toBe("wet, 64 runs, 1 failed");
     expect(infoOf(name, [ensemble])).toMatchObject({ title: "Title of probability_depth_0.5m", unit: "%", from: "wet, 64 runs, 1 failed", ramp: ramps.probability });
-    expect(infoOf(ensembleLayer(ensemble, ensemble.maps[1]), [ensemble])).toMatchObject({ ramp: ramps.peak_depth, from: "wet, 64 runs, 1 failed: nowhere" });
+    expect(infoOf(ensembleLayer(ensemble, ensemble.maps[1]), [ensemble])).toMatchObject({ ramp: layerInfo.peak_depth.ramp, from: "wet, 64 runs, 1 failed: nowhere" });
     expect(infoOf(name, [{ ...ensemble, same_terrain: false }]).from).toContain("other terrain");
     expect(infoOf("peak_speed", []).title).toBe("Peak speed");
   });

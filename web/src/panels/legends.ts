@@ -2,7 +2,7 @@
 import { css, divergingAt, rampAt, ramps, roundStep, type Rgb } from "../scene/colour";
 import { contourInterval } from "../scene/ground";
 import type { Category } from "../protocol/messages";
-import { colourOf, infoOf, isDepthAveragedLayer, isEnsembleLayer } from "../scene/layers";
+import { colourOf, infoOf, isDepthAveragedLayer, isEnsembleLayer, layerInfo } from "../scene/layers";
 import type { ShownLayers } from "../scene/shown_layers";
 import type { Stage } from "../scene/stage";
 import { watchAll } from "../state/cell";
@@ -46,10 +46,11 @@ export function presentLegends(twin: Twin, stage: Stage, layers: ShownLayers): L
         at: (s) => (layers.isDifference ? divergingAt(2 * s - 1) : rampAt(info.ramp, s)), from: [...new Set(twin.shown.value.map((s) => sourceText(twin.cells[s].depthAveraged.value)))].join("; ") });
       return list;
     }
+    const { kind } = layerInfo[name];
     const title = (name === "depth" && time !== null ? "Depth" : info.title) + (layers.isDifference ? `, ${twin.differenceName}` : "") +
-      (time === null ? "" : ["depth", "deposit_depth", "pore_pressure_ratio"].includes(name) ? ` at ${fixed(time, 1)} s` : ` until ${fixed(time, 1)} s`);
+      (time === null ? "" : kind === "present" || name === "pore_pressure_ratio" ? ` at ${fixed(time, 1)} s` : ` until ${fixed(time, 1)} s`);
     list.push(layers.isDifference ? { title, unit: info.unit, low, high, at: (s) => divergingAt(2 * s - 1) }
-      : { title, unit: info.unit, low, high, at: (s) => rampAt(info.ramp, s), ...(time !== null && name.startsWith("peak_") ? { note: pastNote } : {}) });
+      : { title, unit: info.unit, low, high, at: (s) => rampAt(info.ramp, s), ...(time !== null && kind === "peak" ? { note: pastNote } : {}) });
   }
   return list;
 }

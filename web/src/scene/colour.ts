@@ -69,17 +69,12 @@ export const ramps = {
   depth: ramp(205, 0.05, 268, 0.15, 0.9, 0.28),
   /** Of the debris as a surface, which can lie on a map of depth with another scale. */
   surface_depth: ramp(160, 0.05, 195, 0.1, 0.94, 0.26),
-  peak_depth: ramp(205, 0.05, 268, 0.15, 0.9, 0.28),
-  peak_speed: ramp(104, 0.11, 8, 0.13, 0.93, 0.28),
-  peak_pressure: ramp(88, 0.08, -48, 0.14, 0.93, 0.26),
   /** On houses, which can stand on a map of the pressure of the free flow. */
   impact_pressure: ramp(100, 0.1, 20, 0.15, 0.94, 0.34),
-  arrival_time: ramp(215, 0.06, 118, 0.1, 0.3, 0.92),
   /** For a calibration, reversed: the best fit is dark. */
   misfit: ramp(262, 0.12, 95, 0.05, 0.34, 0.96),
   /** Share of an ensemble's runs: as in its GeoTIFF styles. */
   probability: ramp(300, 0.05, 262, 0.13, 0.94, 0.26),
-  deposit_depth: ramp(92, 0.07, 42, 0.09, 0.92, 0.28),
   pore_pressure_ratio: ramp(92, 0.06, 262, 0.14, 0.95, 0.3),
   erosion_depth: ramp(25, 0.07, 52, 0.13, 0.92, 0.3),
 } as const;

@@ -4,7 +4,7 @@ import { scenarioNames, type ScenarioName } from "../protocol/frame";
 import type { Grid } from "../protocol/grid";
 import type { LayerName } from "../protocol/messages";
 import type { Twin } from "../state/twin";
-import { depthAveragedLayer, inUnit } from "./layers";
+import { depthAveragedLayer, inUnit, layerInfo } from "./layers";
 
 const most = 16;
 
@@ -31,7 +31,7 @@ export class DepthAveragedMaps {
     const hash = this.hashOf(scenario);
     if (hash === null || depthAveragedLayer(quantity) === null) return null;
     // Depth is that of the moment; arrivals end at the displayed time; all else is of the whole run.
-    const at = quantity === "depth" ? (time_s ?? this.twin.cells[scenario].state.value?.time_s ?? 0) : quantity === "arrival_time" ? time_s : null;
+    const at = quantity === "depth" ? (time_s ?? this.twin.cells[scenario].state.value?.time_s ?? 0) : layerInfo[quantity].kind === "arrival" ? time_s : null;
     const key = `${scenario} ${hash} ${quantity} ${at ?? ""}`;
     try {
       const grid = this.kept.get(key) ?? inUnit(quantity, await this.twin.api.depthAveragedLayer(scenario, quantity, at));

@@ -2,6 +2,7 @@
 import { DataTexture, FloatType, LinearFilter, NearestFilter, RGFormat, Vector4 } from "three";
 import type { Grid } from "../protocol/grid";
 import type { DepthAveragedLayer, EnsembleLayer, ShownLayer } from "../protocol/layers";
+import { maps, type MapName } from "../protocol/maps";
 import { quantityNames, type Category, type Ensemble, type EnsembleMap, type LayerName, type Place } from "../protocol/messages";
 import { fromHex, rampAt, ramps, roundStep, type Ramp, type Rgb } from "./colour";
 import type { Draped } from "./ground";
@@ -17,15 +18,21 @@ export interface LayerInfo {
   categories?: readonly Category[];
 }
 
-export const layerInfo: Record<LayerName, LayerInfo> = {
-  depth: { title: "Depth now", unit: "m", ramp: ramps.depth, help: "Flow depth, vertical, at this moment" },
-  peak_depth: { title: "Peak depth", unit: "m", ramp: ramps.peak_depth, help: "Largest flow depth so far, vertical" },
-  peak_speed: { title: "Peak speed", unit: "m/s", ramp: ramps.peak_speed, help: "Largest depth-averaged speed so far" },
-  peak_pressure: { title: "Peak dynamic pressure", unit: "kPa", ramp: ramps.peak_pressure, help: "Largest dynamic pressure of the free flow so far: density times speed squared" },
-  arrival_time: { title: "Arrival time", unit: "s", ramp: ramps.arrival_time, help: "Time when debris first arrived" },
-  deposit_depth: { title: "Deposit depth", unit: "m", ramp: ramps.deposit_depth, help: "Depth of debris as it lies" },
-  pore_pressure_ratio: { title: "Pore-pressure ratio", unit: "", ramp: ramps.pore_pressure_ratio, help: "Pore pressure at this moment, over the weight of the debris above: 1 bears all of it" },
-  erosion_depth: { title: "Erosion", unit: "m", ramp: ramps.erosion_depth, help: "Depth that debris entrained from the bed, vertical: the ground is lower by it" },
+/** A layer of a run. */
+interface RunLayer extends LayerInfo {
+  /** From what the server sends, SI units, to the unit. */
+  factor: number;
+  /** Of a map, and of the depth of the moment; null: of none. */
+  kind: (typeof maps)[MapName]["kind"] | null;
+  /** Values below this are not drawn; times count from 0. */
+  least: number;
+}
+
+export const layerInfo: Record<LayerName, RunLayer> = {
+  depth: { title: "Depth now", unit: "m", factor: 1, kind: "present", least: 0.01, ramp: ramps.depth, help: "Flow depth, vertical, at this moment" },
+  ...maps,
+  pore_pressure_ratio: { title: "Pore-pressure ratio", unit: "", factor: 1, kind: null, least: 0, ramp: ramps.pore_pressure_ratio, help: "Pore pressure at this moment, over the weight of the debris above: 1 bears all of it" },
+  erosion_depth: { title: "Erosion", unit: "m", factor: 1, kind: null, least: 0, ramp: ramps.erosion_depth, help: "Depth that debris entrained from the bed, vertical: the ground is lower by it" },
 };
 
 export const isEnsembleLayer = (name: ShownLayer | "none"): name is EnsembleLayer => name.startsWith("ensemble/");
@@ -74,7 +81,7 @@ export function infoOf(name: ShownLayer, ensembles: readonly Ensemble[]): LayerI
 }
 /** Display options of an ensemble's map, NaN elsewhere; a place that no run reached is not part of it. */
 export function shownOfMap(map: EnsembleMap, grid: Grid): Float32Array {
-  const shown = map.kind === "percentile" && map.of !== "intensity" ? least[map.of] : 1e-6;
+  const shown = map.kind === "percentile" && map.of !== "intensity" ? layerInfo[map.of].least : 1e-6;
   return grid.values.map((v) => (v >= shown ? v : NaN));
 }
 /** Ends of its scale: every probability has the same, so that thresholds can be compared; of zones, half a class beyond the first and the last. */
@@ -91,18 +98,14 @@ export function colourOf(info: LayerInfo, share: number): Rgb {
 
 /** A layer of the run in the unit of its legend: the server sends SI units. */
 export function inUnit(name: LayerName, grid: Grid): Grid {
-  return name === "peak_pressure" ? { ...grid, values: grid.values.map((v) => 1e-3 * v) } : grid;
+  const { factor } = layerInfo[name];
+  return factor === 1 ? grid : { ...grid, values: grid.values.map((v) => factor * v) };
 }
-
-/** Values below this are not drawn; times count from 0. */
-const least: Record<LayerName, number> = {
-  depth: 0.01, peak_depth: 0.01, peak_speed: 0.05, peak_pressure: 0.01, arrival_time: 0, deposit_depth: 0.02,
-  pore_pressure_ratio: 0, erosion_depth: 0,
-};
 
 /** Values of the layer that are shown, NaN elsewhere. */
 export function shownValues(name: LayerName, grid: Grid): Float32Array {
-  return grid.values.map((v) => (v >= least[name] ? v : NaN));
+  const { least } = layerInfo[name];
+  return grid.values.map((v) => (v >= least ? v : NaN));
 }
 
 /**
@@ -138,7 +141,7 @@ export function differenceOf(name: LayerName, a: Grid, b: Grid): Grid {
     const w = va[k];
     if (Number.isNaN(v) && Number.isNaN(w)) return NaN;
     // There is none of these where there is no debris.
-    if (name === "arrival_time" || name === "pore_pressure_ratio") return v - w;
+    if (layerInfo[name].kind === "arrival" || name === "pore_pressure_ratio") return v - w;
     return (Number.isNaN(v) ? 0 : v) - (Number.isNaN(w) ? 0 : w);
   });
   return { west, south, cell, columns, rows, values };
