@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstdint>
+#include <limits>
 #include <span>
 #include <string_view>
 #include <vector>
@@ -142,6 +143,14 @@ inline constexpr std::array named_maps = {
              .help = "Depth of debris as it lies",
              .least = 0.02},
 };
+
+/// Of these cells, with no value anywhere.
+[[nodiscard]] inline HazardMaps empty_maps(const GridGeometry& cells) {
+    HazardMaps maps;
+    maps.arrival_speed = Grid<float>(cells, std::numeric_limits<float>::quiet_NaN());
+    for (const NamedMap& map : named_maps) maps.*map.grid = maps.arrival_speed;
+    return maps;
+}
 
 /// nullptr: none of that name.
 [[nodiscard]] constexpr const NamedMap* find_map(std::string_view key) {

@@ -27,16 +27,15 @@ GridObserver::GridObserver(const depth::Solver& solver, terrain::FlowPath flow_p
       flow_path_(std::move(flow_path)),
       density_(solver.material().rest_density),
       gravity_(solver.material().gravity),
-      peak_depth_(solver.geometry()),
-      peak_speed_(solver.geometry()),
-      arrival_time_(solver.geometry(), std::numeric_limits<float>::quiet_NaN()),
-      arrival_speed_(arrival_time_),
       arrival_fastest_(solver.geometry().size(), 0),
       released_(solver.geometry()),
       chainage_(solver.geometry().size(), std::numeric_limits<float>::quiet_NaN()),
       structures_(std::move(structures)),
       energy_(solver.material().gravity) {
     const GridGeometry& g = solver.geometry();
+    for_each_map_array([&](std::vector<float>& map) { map.assign(g.size(), 0); }, reached_);
+    reached_.arrival_time.assign(g.size(), std::numeric_limits<float>::quiet_NaN());
+    reached_.pressure = {};
     for (int row = 0; row < g.rows && !flow_path_.empty(); ++row) {
         for (int column = 0; column < g.columns; ++column) {
             const auto at = flow_path_.locate(g.centre(column, row));
@@ -116,12 +115,12 @@ void GridObserver::measure_cells(const depth::Solver& solver) {
     const auto time = static_cast<float>(solver.time());
     const GridGeometry& g = solver.geometry();
     const auto measure = [&](std::size_t cell, float depth, float speed) {
-        peak_depth_.values[cell] = std::max(peak_depth_.values[cell], depth);
-        peak_speed_.values[cell] = std::max(peak_speed_.values[cell], speed);
-        if (depth > arrives && std::isnan(arrival_time_.values[cell])) {
-            arrival_time_.values[cell] = time;
+        reached_.depth[cell] = std::max(reached_.depth[cell], depth);
+        reached_.speed[cell] = std::max(reached_.speed[cell], speed);
+        if (depth > arrives && std::isnan(reached_.arrival_time[cell])) {
+            reached_.arrival_time[cell] = time;
             const FrontRecord::Head head = head_at(solver, cell);
-            arrival_speed_.values[cell] = static_cast<float>(head.mean);
+            reached_.arrival_speed[cell] = static_cast<float>(head.mean);
             arrival_fastest_[cell] = static_cast<float>(head.fastest);
         }
     };
@@ -168,7 +167,7 @@ void GridObserver::after_step(const depth::Solver& solver, double held, double s
     constexpr float none = std::numeric_limits<float>::lowest();
     float front = std::isnan(front_) ? none : static_cast<float>(front_);
     for (int r = 0; r < g.rows; ++r) {
-        const float* arrival = &arrival_time_.values[g.index(0, r)];
+        const float* arrival = &reached_.arrival_time[g.index(0, r)];
         const float* chainage = &chainage_[g.index(0, r)];
         depth::for_each_of_few(
             g.columns,

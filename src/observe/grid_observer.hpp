@@ -11,6 +11,7 @@
 #include "observe/gauges.hpp"
 #include "observe/grid_structures.hpp"
 #include "observe/map_accumulator.hpp"
+#include "observe/map_shares.hpp"
 #include "observe/observation.hpp"
 #include "params/spec.hpp"
 #include "sim/ground.hpp"
@@ -65,13 +66,15 @@ class GridObserver {
     template <class Archive>
     void keep(Archive& archive) {
         const std::size_t cells = released_.values.size();
-        for (std::vector<float>* map : {&peak_depth_.values, &peak_speed_.values, &arrival_time_.values,
-                                        &arrival_speed_.values, &arrival_fastest_, &released_.values}) {
-            archive(*map);
+        const auto keep_map = [&](std::vector<float>& map) {
+            archive(map);
             if constexpr (Archive::reading) {
-                if (map->size() != cells) return archive.fail();
+                if (map.size() != (&map == &reached_.pressure ? 0 : cells)) archive.fail();
             }
-        }
+        };
+        for_each_map_array(keep_map, reached_);
+        keep_map(arrival_fastest_);
+        keep_map(released_.values);
         archive(structures_, gauges_, sections_, energy_, timeseries_, volume_released_, volume_entrained_, front_);
         if constexpr (Archive::reading) {
             if (timeseries_.empty()) archive.fail();  // it has a row from the beginning on
@@ -91,11 +94,11 @@ class GridObserver {
     params::OutputSpec outputs_;
     terrain::FlowPath flow_path_;
     double density_, gravity_;
-    Grid<float> peak_depth_, peak_speed_, arrival_time_;  ///< 0 and NaN: not reached
-    Grid<float> arrival_speed_;                           ///< m/s, mean of the debris around a cell on arrival
-    std::vector<float> arrival_fastest_;                  ///< m/s, and its largest
-    Grid<float> released_;                                ///< m, by cell
-    std::vector<float> chainage_;                         ///< by cell; NaN: not on the path
+    /// By cell. Speeds of arrival are the mean of the debris around it; peak pressures follow from peak speeds: empty.
+    MapArrays<std::vector<float>> reached_;
+    std::vector<float> arrival_fastest_;  ///< m/s, the largest speed around a cell on arrival
+    Grid<float> released_;                ///< m, by cell
+    std::vector<float> chainage_;         ///< by cell; NaN: not on the path
     GridStructures structures_;
     GaugeRecorder gauges_;
     GridSections sections_;

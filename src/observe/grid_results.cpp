@@ -64,9 +64,9 @@ FrontRecord GridObserver::front_record() const {
     };
     std::vector<Advance> advances;
     for (std::size_t cell = 0; cell < chainage_.size(); ++cell) {
-        if (!(chainage_[cell] > covered) || std::isnan(arrival_time_.values[cell])) continue;
-        advances.push_back(
-            {arrival_time_.values[cell], chainage_[cell], {arrival_speed_.values[cell], arrival_fastest_[cell]}});
+        const float arrived = reached_.arrival_time[cell];
+        if (!(chainage_[cell] > covered) || std::isnan(arrived)) continue;
+        advances.push_back({arrived, chainage_[cell], {reached_.arrival_speed[cell], arrival_fastest_[cell]}});
     }
     std::sort(advances.begin(), advances.end(), [](const Advance& a, const Advance& b) {
         return std::pair(a.time, -a.chainage) < std::pair(b.time, -b.chainage);
@@ -92,7 +92,7 @@ HazardMaps GridObserver::maps(const depth::Solver& solver) const {
     int west = g.columns, east = -1, south = g.rows, north = -1;
     for (int row = 0; row < g.rows; ++row) {
         for (int column = 0; column < g.columns; ++column) {
-            if (!(peak_depth_.at(column, row) > 0)) continue;
+            if (!(reached_.depth[g.index(column, row)] > 0)) continue;
             west = std::min(west, column);
             east = std::max(east, column);
             south = std::min(south, row);
@@ -107,21 +107,15 @@ HazardMaps GridObserver::maps(const depth::Solver& solver) const {
     north = std::min(g.rows - 1, north + margin);
     const GridGeometry part{g.x_min + west * g.cell, g.y_min + south * g.cell, g.cell, east - west + 1,
                             north - south + 1};
-    const Grid<float> unknown(part, std::numeric_limits<float>::quiet_NaN());
-    HazardMaps maps{unknown, unknown, unknown, unknown, unknown, unknown};
+    HazardMaps maps = empty_maps(part);
     for (int row = south; row <= north; ++row) {
         for (int column = west; column <= east; ++column) {
-            const int c = column - west, r = row - south;
+            const std::size_t at = g.index(column, row), k = part.index(column - west, row - south);
+            const float depth = solver.depth_at(column, row), speed = reached_.speed[at];
             // Also where it is too thin to count as having come: the map holds all the debris that is there.
-            if (solver.depth_at(column, row) > 0) maps.deposit_depth.at(c, r) = solver.depth_at(column, row);
-            if (!(peak_depth_.at(column, row) > 0)) continue;
-            const float speed = peak_speed_.at(column, row);
-            maps.peak_depth.at(c, r) = peak_depth_.at(column, row);
-            maps.peak_speed.at(c, r) = speed;
-            maps.peak_pressure.at(c, r) = static_cast<float>(density_ * speed * speed);
-            maps.arrival_time.at(c, r) = arrival_time_.at(column, row);
-            maps.arrival_speed.at(c, r) = arrival_speed_.at(column, row);
-            maps.deposit_depth.at(c, r) = solver.depth_at(column, row);
+            if (depth > 0) maps.deposit_depth.values[k] = depth;
+            if (!(reached_.depth[at] > 0)) continue;
+            read_cell(reached_, at, static_cast<float>(density_ * speed * speed), depth, maps, k);
         }
     }
     return maps;

@@ -102,19 +102,14 @@ HazardMaps MapAccumulator::maps() const {
     const GridGeometry g{geometry_.x_min + first_column * geometry_.cell, geometry_.y_min + first_row * geometry_.cell,
                          geometry_.cell, last_column - first_column + 1, last_row - first_row + 1};
 
-    const Grid<float> empty(g, std::numeric_limits<float>::quiet_NaN());
-    HazardMaps maps{empty, empty, empty, empty, empty, empty};
+    HazardMaps maps = empty_maps(g);
     for (const auto& tile : tiles_) {
         for (std::size_t cell = 0; cell < tile_cells; ++cell) {
             if (tile->depth[cell] == 0) continue;
             const std::size_t k =
                 g.index(tile->column + column_of(cell) - first_column, tile->row + row_of(cell) - first_row);
-            maps.peak_depth.values[k] = tile->depth[cell];
-            maps.peak_speed.values[k] = tile->speed[cell];
-            maps.peak_pressure.values[k] = peak_pressure(*tile, cell);
-            maps.arrival_time.values[k] = tile->arrival_time[cell];
-            if (!std::isnan(tile->arrival_time[cell])) maps.arrival_speed.values[k] = tile->arrival_speed[cell];
-            maps.deposit_depth.values[k] = static_cast<float>(depth(sum_of(*tile, cell).volume()));
+            const auto present = static_cast<float>(depth(sum_of(*tile, cell).volume()));
+            read_cell(*tile, cell, peak_pressure(*tile, cell), present, maps, k);
         }
     }
     return maps;

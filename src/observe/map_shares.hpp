@@ -115,6 +115,18 @@ TALUS_DEVICE inline void clear_cell(const MapCell& cell) {
     cell.arrival_time = std::numeric_limits<float>::quiet_NaN();
 }
 
+/// Gives cell `k` of the maps what it keeps at `at`; `pressure`, Pa, and `present`, m: the peak so far, and the depth
+/// now.
+template <class Arrays, class Maps>
+void read_cell(const Arrays& from, std::size_t at, float pressure, float present, Maps& maps, std::size_t k) {
+    maps.peak_depth.values[k] = from.depth[at];
+    maps.peak_speed.values[k] = from.speed[at];
+    maps.peak_pressure.values[k] = pressure;
+    maps.arrival_time.values[k] = from.arrival_time[at];
+    if (!std::isnan(from.arrival_time[at])) maps.arrival_speed.values[k] = from.arrival_speed[at];
+    maps.deposit_depth.values[k] = present;
+}
+
 /// Peaks and arrival after a step at `time`.
 TALUS_DEVICE inline void update_cell(const MapScale& scale, const MapSum& sum, double density, double time,
                                      const MapCell& cell) {
