@@ -22,6 +22,9 @@ SCENE_HELP = (
     "either it is the one that comes with talus. Values that are left empty are those of the scene."
 )
 
+# That every run has, by the names of their files.
+MAPS = ["peak_depth", "peak_speed", "peak_pressure", "arrival_time", "deposit_depth"]
+
 
 class Run(TalusAlgorithm):
     NAME, TITLE = "run", "Run"
@@ -32,7 +35,7 @@ class Run(TalusAlgorithm):
         "range. Time 0 is the beginning of the year 2000.\n\n" + SCENE_HELP
     )
     MODELS = ["", "particles", "depth_averaged"]
-    MAPS = ["peak_depth", "peak_speed", "peak_pressure", "arrival_time", "deposit_depth", "intensity", "terrain"]
+    MAPS = [*MAPS, "intensity", "terrain"]
     OVER_TIME = ["depth", "speed", "pressure"]
 
     def initAlgorithm(self, configuration=None):
@@ -187,7 +190,7 @@ class Ensemble(ManyRuns):
             name = f"probability_intensity_{intensity}"
             higher = "" if intensity == "high" else " or higher"
             maps[name.upper()] = (name, f"Probability of {intensity} intensity{higher}")
-        for quantity in ("peak_depth", "peak_speed", "peak_pressure", "arrival_time", "deposit_depth"):
+        for quantity in MAPS:
             for level, words in self.PERCENTILES.items():
                 name = f"{quantity}_p{level}"
                 maps[name.upper()] = (name, f"{quantity.replace('_', ' ').capitalize()}, {words} percentile")

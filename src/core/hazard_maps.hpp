@@ -51,8 +51,8 @@ struct NamedMap {
     const char* caption = "";      ///< a sentence, in a report
     const char* tab = nullptr;     ///< the short title there; nullptr: the title
     int digits = 1;                ///< there
-    std::span<const double>
-        breaks{};  ///< lower limits of classes, in `unit`; below the first: not drawn. Empty: even classes
+    /// Lower limits of classes, in `unit`; below the first nothing is drawn. Empty: even classes.
+    std::span<const double> breaks{};
     Ramp ramp{};
 
     const char* title_so_far = nullptr;  ///< of the file of a live run; nullptr: the title
@@ -72,9 +72,9 @@ inline constexpr std::array deposit = {0.05, 0.1, 0.25, 0.5, 1.0, 2.0, 3.0, 5.0,
 
 }  // namespace map_breaks
 
-/// The maps that every run has, in the order in which they are written. What a step adds to one is in
-/// observe/map_shares.hpp and observe/grid_observer.cpp; tests/report/hazard_maps_test.cpp names the lists of other
-/// languages that lack it.
+/// The maps that every run has, in the order in which they are written; new ones at the end, as ensembles know the
+/// first by their place. What a step adds to one is in observe/map_shares.hpp and observe/grid_observer.cpp;
+/// tests/report/hazard_maps_test.cpp names the lists of other languages that lack it.
 inline constexpr std::array named_maps = {
     NamedMap{.key = "peak_depth",
              .grid = &HazardMaps::peak_depth,
