@@ -6,6 +6,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "report/hazard_map.hpp"
 #include "report_fixture.hpp"
 
 namespace talus::test {
