@@ -1,6 +1,7 @@
 #include "sim/cpu/cell_sort.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <limits>
 
 #include "simd/parallel.hpp"
@@ -8,10 +9,9 @@
 namespace talus::sim::cpu {
 namespace {
 
-constexpr int digit_bits = 11;
-constexpr std::size_t digit_count = std::size_t{1} << digit_bits;
+constexpr int max_digit_bits = 11;
 constexpr std::size_t histogram_span =
-    4096;  // particles per histogram; fixed, so the work does not depend on the number of threads
+    2048;  // particles per histogram; fixed, so the work does not depend on the number of threads
 
 struct Bounds {
     float x_min = std::numeric_limits<float>::max(), y_min = x_min, z_min = x_min;
@@ -47,7 +47,7 @@ CellSort::CellSort(std::size_t capacity)
       key_swap_(capacity),
       order_(capacity),
       order_swap_(capacity),
-      histogram_((capacity / histogram_span + 1) * digit_count) {}
+      histogram_((capacity / histogram_span + 1) << max_digit_bits) {}
 
 std::span<const std::uint32_t> CellSort::sort(const VectorArray& points, std::size_t count, double cell,
                                               CellGrid& grid) {
@@ -66,7 +66,7 @@ std::span<const std::uint32_t> CellSort::sort(const VectorArray& points, std::si
     grid.rows = cells_along(box.y_min, box.y_max);
     const std::uint64_t layers = cells_along(box.z_min, box.z_max);
 
-    simd::parallel_ranges(count, 4096, [&](std::size_t first, std::size_t last) {
+    simd::parallel_ranges(count, histogram_span, [&](std::size_t first, std::size_t last) {
         for (std::size_t i = first; i < last; ++i) {
             const auto cx = static_cast<std::uint64_t>((points.x[i] - grid.x_min) * grid.inverse_cell);
             const auto cy = static_cast<std::uint64_t>((points.y[i] - grid.y_min) * grid.inverse_cell);
@@ -77,22 +77,37 @@ std::span<const std::uint32_t> CellSort::sort(const VectorArray& points, std::si
     });
     radix_sort(count, grid.columns * grid.rows * layers);
 
-    grid.key.clear();
-    grid.start.clear();
-    for (std::size_t i = 0; i < count; ++i) {
-        if (i == 0 || key_[i] != key_[i - 1]) {
-            grid.key.push_back(key_[i]);
-            grid.start.push_back(static_cast<std::uint32_t>(i));
-        }
-    }
-    grid.start.push_back(static_cast<std::uint32_t>(count));
+    list_cells(count, grid);
     return {order_.data(), count};
+}
+
+/// Without a branch, which would be mispredicted at every cell: a cell's end moves on with each of its particles.
+void CellSort::list_cells(std::size_t count, CellGrid& grid) const {
+    grid.key.resize(count);
+    grid.start.resize(count + 1);
+    std::uint64_t* const keys = grid.key.data();
+    std::uint32_t* const starts = grid.start.data();
+    std::size_t cell = 0;
+    for (std::size_t i = 0; i < count; ++i) {
+        cell += i > 0 && key_[i] != key_[i - 1] ? 1 : 0;
+        keys[cell] = key_[i];
+        starts[cell + 1] = static_cast<std::uint32_t>(i + 1);
+    }
+    const std::size_t cells = count > 0 ? cell + 1 : 0;
+    starts[0] = 0;
+    grid.key.resize(cells);
+    grid.start.resize(cells + 1);
 }
 
 void CellSort::radix_sort(std::size_t count, std::uint64_t max_key) {
     const std::size_t histograms = (count + histogram_span - 1) / histogram_span;
-    for (int shift = 0; shift < 64 && (max_key >> shift) != 0; shift += digit_bits) {
-        const auto digit = [shift](std::uint64_t key) {
+    // As few passes as the keys need, and no wider digits than these: a histogram costs as much as it has digits.
+    const int key_bits = std::bit_width(max_key), passes = (key_bits + max_digit_bits - 1) / max_digit_bits;
+    const int digit_bits = passes > 0 ? (key_bits + passes - 1) / passes : 0;
+    const std::size_t digit_count = std::size_t{1} << digit_bits;
+    for (int pass = 0; pass < passes; ++pass) {
+        const int shift = pass * digit_bits;
+        const auto digit = [=](std::uint64_t key) {
             return static_cast<std::size_t>(key >> shift) & (digit_count - 1);
         };
         simd::parallel_ranges(histograms, 1, [&](std::size_t first, std::size_t last) {

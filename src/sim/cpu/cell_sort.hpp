@@ -29,6 +29,7 @@ class CellSort {
 
   private:
     void radix_sort(std::size_t count, std::uint64_t max_key);
+    void list_cells(std::size_t count, CellGrid& grid) const;
 
     std::vector<std::uint64_t> key_, key_swap_;
     std::vector<std::uint32_t> order_, order_swap_;

@@ -71,7 +71,8 @@ NeighbourSearch::Found NeighbourSearch::find(const VectorArray& points, std::spa
 void NeighbourSearch::move_sleeping_last() {
     awake_ = 0;
     for (std::uint32_t i = 0; i < particles_; ++i) {
-        if (!asleep_[i]) window_[awake_++] = i;
+        window_[awake_] = i;  // replaced by the next one if this sleeps
+        awake_ += asleep_[i] ? 0 : 1;
     }
     std::size_t next = awake_;
     for (std::uint32_t i = 0; next < particles_; ++i) {
@@ -129,13 +130,9 @@ void NeighbourSearch::write(NeighbourLists& lists) {
     const std::size_t blocks = blocks_of(awake_);
     std::uint32_t size = 0;
     for (std::size_t b = 0; b < blocks; ++b) {
-        std::uint32_t longest = 0;
-        for (std::size_t i = b * block_size; i < std::min(awake_, (b + 1) * block_size); ++i) {
-            longest = std::max(longest, count_[source_[i]]);
-        }
         lists.start[b] = size;
-        lists.length[b] = longest;
-        size += longest * block_size;
+        lists.length[b] = longest_list(b);
+        size += lists.length[b] * static_cast<std::uint32_t>(block_size);
     }
     if (lists.neighbour.size() < size) {
         lists.neighbour.resize(size + size / 2);
@@ -144,6 +141,14 @@ void NeighbourSearch::write(NeighbourLists& lists) {
     simd::parallel_ranges(blocks, 16, [&](std::size_t first, std::size_t last) {
         for (std::size_t b = first; b < last; ++b) write_block(b, lists);
     });
+}
+
+std::uint32_t NeighbourSearch::longest_list(std::size_t block) const {
+    const std::size_t first = block * block_size, last = std::min(awake_, first + block_size);
+    std::uint32_t longest = count_[source_[first]];
+    if (longest < max_counted) return longest;  // balance() put it first; beyond, it did not look
+    for (std::size_t i = first + 1; i < last; ++i) longest = std::max(longest, count_[source_[i]]);
+    return longest;
 }
 
 /// Entry by entry through all lists of the block as far as all have one, so that memory is written in order.

@@ -64,6 +64,7 @@ class NeighbourSearch {
     bool try_find(const CellGrid& grid, float radius);
     void move_sleeping_last();
     void balance();
+    [[nodiscard]] std::uint32_t longest_list(std::size_t block) const;
     void write_block(std::size_t block, NeighbourLists& lists) const;
 
     FindInCells find_in_cells_;
