@@ -39,7 +39,7 @@ Backend::Backend(const Model& model, std::size_t capacity)
       gone_(capacity),
       new_index_(capacity) {
     reordered_.resize(capacity);
-    grid_.key.reserve(capacity);
+    grid_.key.reserve(capacity + 1);
     grid_.start.reserve(capacity + 1);
 }
 

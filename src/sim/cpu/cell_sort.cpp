@@ -83,7 +83,7 @@ std::span<const std::uint32_t> CellSort::sort(const VectorArray& points, std::si
 
 /// Without a branch, which would be mispredicted at every cell: a cell's end moves on with each of its particles.
 void CellSort::list_cells(std::size_t count, CellGrid& grid) const {
-    grid.key.resize(count);
+    grid.key.resize(count + 1);
     grid.start.resize(count + 1);
     std::uint64_t* const keys = grid.key.data();
     std::uint32_t* const starts = grid.start.data();
@@ -95,7 +95,8 @@ void CellSort::list_cells(std::size_t count, CellGrid& grid) const {
     }
     const std::size_t cells = count > 0 ? cell + 1 : 0;
     starts[0] = 0;
-    grid.key.resize(cells);
+    grid.key.resize(cells + 1);
+    grid.key[cells] = std::numeric_limits<std::uint64_t>::max();
     grid.start.resize(cells + 1);
 }
 

@@ -12,11 +12,11 @@ namespace talus::sim::cpu {
 /// nor time: a dense grid over the bounding box of a valley would cost more than the solver.
 struct CellGrid {
     double x_min = 0, y_min = 0, z_min = 0, inverse_cell = 0;
-    std::uint64_t columns = 1, rows = 1;  // of the padded box: keys run x first, then y, then z
-    std::vector<std::uint64_t> key;       // one per occupied cell, ascending
-    std::vector<std::uint32_t> start;     // first particle of the cell; one more at the end
+    std::uint64_t columns = 1, rows = 1;     // of the padded box: keys run x first, then y, then z
+    std::vector<std::uint64_t> key;          // one per occupied cell, ascending; one beyond all at the end
+    std::vector<std::uint32_t> start = {0};  // first particle of the cell; one more at the end
 
-    [[nodiscard]] std::size_t cell_count() const { return key.size(); }
+    [[nodiscard]] std::size_t cell_count() const { return start.size() - 1; }
 };
 
 /// Computes the order that sorts the particles by cell. A stable radix sort: equal cells keep their earlier order.

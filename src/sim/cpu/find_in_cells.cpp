@@ -18,7 +18,7 @@ namespace {
 
 constexpr int row_count = 9;  // a cell's 27 neighbours are 9 rows of 3 cells with consecutive keys
 
-/// Walks the 9 neighbour rows of ascending cells. As keys ascend, every row's position only moves forward, so a sweep
+/// Walks the 9 neighbour rows of ascending cells. As keys ascend, both ends of a row only move forward, so a sweep
 /// needs no hash table and visits occupied cells only.
 class RowSweep {
   public:
@@ -31,25 +31,30 @@ class RowSweep {
                     (static_cast<std::uint64_t>(dz) * grid.rows + static_cast<std::uint64_t>(dy)) * grid.columns - 1;
                 offset_[row] = offset;
                 const auto from = std::lower_bound(grid.key.begin(), grid.key.end(), grid.key[first_cell] + offset);
-                cell_[row] = static_cast<std::size_t>(from - grid.key.begin());
+                begin_[row] = end_[row] = static_cast<std::size_t>(from - grid.key.begin());
             }
         }
     }
 
     /// The particles [first, last) of a row of three cells around `cell`; cells must be requested in ascending order.
     std::pair<std::uint32_t, std::uint32_t> particles(std::size_t row, std::size_t cell) {
-        const std::uint64_t low = grid_.key[cell] + offset_[row];
-        std::size_t& at = cell_[row];
-        while (at < grid_.key.size() && grid_.key[at] < low) ++at;
-        std::size_t end = at;
-        while (end < grid_.key.size() && grid_.key[end] <= low + 2) ++end;
-        return {grid_.start[at], grid_.start[end]};
+        const std::uint64_t* const key = grid_.key.data();
+        const std::uint64_t low = key[cell] + offset_[row], high = low + 2;
+        // By one or by none in most cases: without a branch, which could not be predicted.
+        const auto advance = [key](std::size_t at, std::uint64_t past) {
+            at += key[at] < past ? 1 : 0;
+            while (key[at] < past) ++at;
+            return at;
+        };
+        begin_[row] = advance(begin_[row], low);
+        end_[row] = advance(end_[row], high + 1);
+        return {grid_.start[begin_[row]], grid_.start[end_[row]]};
     }
 
   private:
     const CellGrid& grid_;
     std::array<std::uint64_t, row_count> offset_{};
-    std::array<std::size_t, row_count> cell_{};
+    std::array<std::size_t, row_count> begin_{}, end_{};
 };
 
 /// For each mask of `lanes` bits: the lanes whose bits are set, in order, the others after them.
@@ -100,14 +105,17 @@ constexpr float far_away = 1e18f;  // m; its square is a float
 /// in turn. Padded by one vector of particles that are near nothing.
 Candidates collect_candidates(const VectorArray& sorted, RowSweep& sweep, std::size_t cell, std::uint32_t begin,
                               SearchScratch& scratch) {
-    constexpr D d;
-    constexpr DU du;
+    constexpr hn::CappedTag<float, 8> d;  // a row seldom has more: a wider store would cross into another cache line
+    constexpr hn::RebindToUnsigned<decltype(d)> du;
+    constexpr D padding;
     const std::size_t lanes = hn::Lanes(d);
+    // Once: Highway 1.0 writes it lane by lane into memory, from where a whole vector cannot be loaded at once.
+    const auto ascending = hn::Iota(du, 0);
     std::size_t count = 0, own = 0;
     for (std::size_t row = 0; row < row_count; ++row) {
         const auto [first, last] = sweep.particles(row, cell);
         if (row == row_count / 2) own = count + (begin - first);
-        const std::size_t room = count + (last - first) + 2 * lanes;
+        const std::size_t room = count + (last - first) + 2 * hn::Lanes(padding);
         if (scratch.x.size() < room) {
             for (auto* array : {&scratch.x, &scratch.y, &scratch.z}) array->resize(2 * room);
             scratch.index.resize(2 * room);
@@ -117,11 +125,11 @@ Candidates collect_candidates(const VectorArray& sorted, RowSweep& sweep, std::s
             hn::StoreU(hn::LoadU(d, sorted.x.data() + j), d, scratch.x.data() + to);
             hn::StoreU(hn::LoadU(d, sorted.y.data() + j), d, scratch.y.data() + to);
             hn::StoreU(hn::LoadU(d, sorted.z.data() + j), d, scratch.z.data() + to);
-            hn::StoreU(hn::Iota(du, j), du, scratch.index.data() + to);
+            hn::StoreU(hn::Add(ascending, hn::Set(du, j)), du, scratch.index.data() + to);
         }
         count += last - first;
     }
-    hn::StoreU(hn::Set(d, far_away), d, scratch.x.data() + count);
+    hn::StoreU(hn::Set(padding, far_away), padding, scratch.x.data() + count);
     return {count, own};
 }
 
