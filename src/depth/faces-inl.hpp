@@ -70,7 +70,7 @@ HWY_INLINE void cross_faces(float gravity, const Row& before, int j, const Row& 
     // Nor does debris climb to a face that its energy does not reach.
     const L reach =
         select(flux.mass > L(0), line_before + L(2) * lift * from.depth, line_after + L(2) * lift * onto.depth);
-    const L passes = select(wall_before + wall_after > L(1), L(0), select(reach < L(0), L(0), open));
+    const L passes = select(wall_before + wall_after > L(1), L(0), opaque(select(reach < L(0), L(0), open)));
     store(flux.normal * open, faces.normal, to);
     store(flux.across * passes, faces.across, to);
     store(flux.pressure_before * open * (L(1) - falls_before), faces.pressure_before, to);
