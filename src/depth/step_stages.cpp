@@ -17,7 +17,19 @@ HWY_BEFORE_NAMESPACE();
 namespace talus::depth::HWY_NAMESPACE {
 namespace {
 
-[[gnu::flatten]] float advance(const StageData& data, const Segment& segment, std::uint8_t* changed, int* computed) {
+template <bool plain>
+[[gnu::flatten]] float advance_as(const StageData& given, const Segment& segment, std::uint8_t* changed,
+                                  int* computed) {
+    StageData data = given;
+    if (plain) {
+        data.structure = nullptr;
+        data.inflow = {};
+        data.from.pore_pressure = data.from.solid_fraction = data.from.height = data.from.climb = nullptr;
+        data.cover.viscosity = nullptr;
+        data.viscosity = 0;
+        data.laws = {};
+        data.passes_east = data.passes_north = nullptr;
+    }
     Scratch scratch{};
     const int width = segment.tiles * tile_edge;
     const std::ptrdiff_t first =
@@ -72,6 +84,14 @@ namespace {
         if (std::isnan(one)) break;
     }
     return result;
+}
+
+float advance(const StageData& data, const Segment& segment, std::uint8_t* changed, int* computed) {
+    const bool plain = data.structure == nullptr && data.inflow.depth == nullptr && data.from.pore_pressure == nullptr &&
+                       data.from.height == nullptr && data.cover.viscosity == nullptr && !(data.viscosity > 0) &&
+                       !(data.laws.turbulent_thickness > 0) && !data.laws.samosat.on && data.passes_east == nullptr;
+    return plain ? advance_as<true>(data, segment, changed, computed)
+                 : advance_as<false>(data, segment, changed, computed);
 }
 
 Stages make_stages() {
