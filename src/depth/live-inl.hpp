@@ -11,6 +11,7 @@
 #include <cstdint>
 #include <hwy/highway.h>
 
+#include "depth/rows-inl.hpp"
 #include "depth/stages.hpp"
 
 HWY_BEFORE_NAMESPACE();
@@ -88,9 +89,14 @@ class Live {
 
     /// Not a number counts as debris: it must be found.
     static HWY_INLINE bool any_of(const float* depth, int cells) {
-        bool any = false;
-        for (int k = 0; k < cells; ++k) any |= !(depth[k] <= 0);
-        return any;
+        bool found = false;
+        if (cells % lane_count == 0) {
+            const L zero(0);
+            for (int k = 0; k < cells; k += lane_count) found |= any(!(L::load(depth + k) <= zero));
+        } else {
+            for (int k = 0; k < cells; ++k) found |= !(depth[k] <= 0);
+        }
+        return found;
     }
     static HWY_INLINE bool holds(const StageData& data, std::ptrdiff_t i, int cells) {
         return any_of(data.from.depth + i, cells) ||
