@@ -14,8 +14,9 @@
 HWY_BEFORE_NAMESPACE();
 namespace talus::depth::HWY_NAMESPACE {
 
-/// Fluxes between entry j of `before` and entry k of `after`; the normal velocity of the axis is u, if `along_x`.
-HWY_INLINE void cross_faces(float gravity, const Row& before, int j, const Row& after, int k, bool along_x,
+/// Fluxes between entry j of `before` and entry k of `after`; the normal velocity of the axis is u, if `along_x`. If not
+/// `built`, no wall there is more than 1: dry ground.
+HWY_INLINE void cross_faces(float gravity, bool built, const Row& before, int j, const Row& after, int k, bool along_x,
                             Faces& faces, int to) {
     const AxisRow &b = along_x ? before.x : before.y, &a = along_x ? after.x : after.y;
     const L lift = (load(before.lift, j) + load(after.lift, k)) * L(0.5F);
@@ -38,10 +39,10 @@ HWY_INLINE void cross_faces(float gravity, const Row& before, int j, const Row& 
     FaceSide<L> from = side(load(b.wave, j), b.after, before, j, line_before);
     FaceSide<L> onto = side(load(a.wave, k), a.before, after, k, line_after);
     // Beside dry ground that stands above it, debris sees itself; beside a structure, its mirror image.
-    const auto mirror = [](const L& wall, const FaceSide<L>& of, FaceSide<L>& in) HWY_ATTR {
+    const auto mirror = [&](const L& wall, const FaceSide<L>& of, FaceSide<L>& in) HWY_ATTR {
         in.depth = select(wall > L(0), of.depth, in.depth);
         in.normal = select(wall > L(0), of.normal, in.normal);
-        in.normal = select(wall > L(1), L(0) - of.normal, in.normal);
+        if (built) in.normal = select(wall > L(1), L(0) - of.normal, in.normal);
         in.across = select(wall > L(0), of.across, in.across);
         in.wave = select(wall > L(0), of.wave, in.wave);
         in.square = select(wall > L(0), of.square, in.square);
@@ -51,14 +52,20 @@ HWY_INLINE void cross_faces(float gravity, const Row& before, int j, const Row& 
     const auto falls = [](const L& wall, const FaceSide<L>& top) HWY_ATTR {
         return opaque(select(wall > L(1), L(1), L(0))) * opaque(select(top.depth > L(0), L(1), L(0)));
     };
-    const L falls_after = falls(load(a.before.wall, k), from), falls_before = falls(load(b.after.wall, j), onto);
-    const L wall_before = load(a.before.wall, k) * (L(1) - falls_after);
-    const L wall_after = load(b.after.wall, j) * (L(1) - falls_before);
+    L falls_after(0), falls_before(0), wall_before = load(a.before.wall, k), wall_after = load(b.after.wall, j);
+    if (built) {
+        falls_after = falls(wall_before, from);
+        falls_before = falls(wall_after, onto);
+        wall_before = wall_before * (L(1) - falls_after);
+        wall_after = wall_after * (L(1) - falls_before);
+    }
     const FaceSide<L> unchanged = from;
     mirror(wall_before, onto, from);
     mirror(wall_after, unchanged, onto);
-    onto.depth = onto.depth * (L(1) - falls_after);
-    from.depth = from.depth * (L(1) - falls_before);
+    if (built) {
+        onto.depth = onto.depth * (L(1) - falls_after);
+        from.depth = from.depth * (L(1) - falls_before);
+    }
     Flux<L> flux = face_flux(from, onto);
     const L open = select(load(before.at_rest, j) * load(after.at_rest, k) > L(0), L(0), L(1));
     // Debris that passes has followed the ground of one cell and meets that of the other: half of the change is felt on
@@ -70,11 +77,17 @@ HWY_INLINE void cross_faces(float gravity, const Row& before, int j, const Row& 
     // Nor does debris climb to a face that its energy does not reach.
     const L reach =
         select(flux.mass > L(0), line_before + L(2) * lift * from.depth, line_after + L(2) * lift * onto.depth);
-    const L passes = select(wall_before + wall_after > L(1), L(0), opaque(select(reach < L(0), L(0), open)));
+    L passes = opaque(select(reach < L(0), L(0), open));
+    L pressure_before = flux.pressure_before * open, pressure_after = flux.pressure_after * open;
+    if (built) {
+        passes = select(wall_before + wall_after > L(1), L(0), passes);
+        pressure_before = pressure_before * (L(1) - falls_before);
+        pressure_after = pressure_after * (L(1) - falls_after);
+    }
     store(flux.normal * open, faces.normal, to);
     store(flux.across * passes, faces.across, to);
-    store(flux.pressure_before * open * (L(1) - falls_before), faces.pressure_before, to);
-    store(flux.pressure_after * open * (L(1) - falls_after), faces.pressure_after, to);
+    store(pressure_before, faces.pressure_before, to);
+    store(pressure_after, faces.pressure_after, to);
     store(flux.mass * passes, faces.mass, to);
     store(L(0.5F) * flux.mass * turn * passes, faces.press, to);
     const L spare = select(flux.mass > L(0), load(before.spare, j), load(after.spare, k));

@@ -37,6 +37,7 @@ template <bool plain>
     const auto row_of = [&](int r) HWY_ATTR -> Row& { return scratch.rows[static_cast<std::size_t>(r & 1)]; };
     const bool carries = data.from.pore_pressure != nullptr, flies = data.from.height != nullptr;
     const bool evolves = data.from.solid_fraction != nullptr;
+    const bool built = data.structure != nullptr || data.inflow.depth != nullptr;
     const Live live(data, first, segment.tiles);
     *computed = live.count() * tile_edge;
     Fastest fastest;
@@ -46,7 +47,7 @@ template <bool plain>
             if (!live.faces_east(r - 2, tile)) continue;
             const Row& row = row_of(r - 1);
             for (int j = tile * tile_edge; j <= width && j < (tile + 1) * tile_edge; j += lane_count) {
-                cross_faces(data.gravity, row, j, row, j + 1, true, scratch.x, j);
+                cross_faces(data.gravity, built, row, j, row, j + 1, true, scratch.x, j);
                 if (carries) cross_faces_with_pore_pressure(row, j, row, j + 1, evolves, scratch.x, j);
                 if (flies) cross_faces_in_flight(row, j, row, j + 1, scratch.x, j);
             }
@@ -62,7 +63,7 @@ template <bool plain>
         for (int tile = 0; tile < segment.tiles; ++tile) {
             if (!live.faces_between(r - 1, tile)) continue;
             for (int j = tile * tile_edge + 1; j <= (tile + 1) * tile_edge; j += lane_count) {
-                cross_faces(data.gravity, row_of(r - 1), j, row_of(r), j, false, faces, j);
+                cross_faces(data.gravity, built, row_of(r - 1), j, row_of(r), j, false, faces, j);
                 if (carries) cross_faces_with_pore_pressure(row_of(r - 1), j, row_of(r), j, evolves, faces, j);
                 if (flies) cross_faces_in_flight(row_of(r - 1), j, row_of(r), j, faces, j);
             }

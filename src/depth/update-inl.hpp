@@ -290,7 +290,7 @@ HWY_INLINE void update(const StageData& data, Scratch& scratch, int r, std::ptrd
         const L taken = smaller(wanted, most);
         spare = half * smaller(allowed - taken, L(largest_spare) * (taken + lift * to_depth * to_depth));
         change = change + difference(to_depth, old_depth) + difference(new_u, old_u) + difference(new_v, old_v);
-        const L signal = select(to_depth <= L(dry_depth), zero,
+        const L signal = select(opaque(to_depth) <= L(dry_depth), zero,
                                 magnitude(new_u) + magnitude(new_v) + L(2) * sqrt(gravity * to_depth));
         fastest.largest = larger(fastest.largest, signal);
         fastest.unknown = fastest.unknown + signal * zero;
