@@ -14,24 +14,45 @@
 #include "depth/formulas.hpp"
 #include "depth/soil.hpp"
 #include "depth/stages.hpp"
-#include "simd/lanes.hpp"
+#include "simd/lane_pairs.hpp"
 
 HWY_BEFORE_NAMESPACE();
 namespace talus::depth::HWY_NAMESPACE {
 
-constexpr int lane_count = HWY_MAX_BYTES >= 64 ? 16 : HWY_MAX_BYTES >= 32 ? 8 : 4;
-static_assert(tile_edge % lane_count == 0);
-using L = simd::Lanes<lane_count>;
+constexpr int register_lanes = HWY_MAX_BYTES >= 64 ? 16 : HWY_MAX_BYTES >= 32 ? 8 : 4;
+static_assert(tile_edge % register_lanes == 0);
+using Register = simd::Lanes<register_lanes>;
+using Edge = simd::Lanes<4>;
+#ifndef PR
+#define PR 0
+#endif
+#ifndef PF
+#define PF 0
+#endif
+#ifndef PU
+#define PU 0
+#endif
+using Twice = simd::LanePair<register_lanes>;
+using ForCells = std::conditional_t<PR != 0, Twice, Register>;
+using ForFaces = std::conditional_t<PF != 0, Twice, Register>;
+using ForUpdates = std::conditional_t<PU != 0, Twice, Register>;
 
 // Numbers of a row of a segment. Entry 0 is the cell west of it; the last vector may extend beyond the cell east of it.
 constexpr int row_length = (largest_segment + 2) * tile_edge;
-using Numbers = std::array<float, row_length>;
+struct alignas(64) Numbers {
+    std::array<float, row_length> numbers;
 
+    [[nodiscard]] HWY_INLINE const float* at(int j) const { return numbers.data() + (j + tile_edge - 1); }
+    [[nodiscard]] HWY_INLINE float* at(int j) { return numbers.data() + (j + tile_edge - 1); }
+};
+
+template <class L>
 HWY_INLINE L load(const Numbers& from, int j) {
-    return L::load(from.data() + j);
+    return L::load(from.at(j));
 }
+template <class L>
 HWY_INLINE void store(const L& numbers, Numbers& to, int j) {
-    numbers.store(to.data() + j);
+    numbers.store(to.at(j));
 }
 
 /// What the faces on one side of a row of cells see of them.
@@ -69,11 +90,21 @@ struct Scratch {
 };
 
 struct Fastest {
-    L largest = L(0);
-    L unknown = L(0);  ///< 0, or NaN if there was one
+    Register largest = Register(0);
+    Register unknown = Register(0);  ///< 0, or NaN if there was one
+
+    HWY_INLINE void take(const Register& signal) {
+        largest = larger(largest, signal);
+        unknown = unknown + signal * Register(0);
+    }
+    HWY_INLINE void take(const simd::LanePair<register_lanes>& signal) {
+        take(signal.a);
+        take(signal.b);
+    }
 };
 
 /// What goes with the mass and resists.
+template <class L>
 struct Water {
     L pore_pressure;   ///< if it is carried
     L solid_fraction;  ///< if pore pressure evolves
@@ -81,8 +112,9 @@ struct Water {
 };
 
 /// Friction of soil whose pore pressure evolves: (1 - lambda) tan(phi + psi), see sim/physics/pore_pressure.hpp.
+template <class L>
 HWY_INLINE L friction_of_soil(const StageData& data, const L& friction, const L& depth, const L& stretch,
-                              const Water& water) {
+                              const Water<L>& water) {
     const L zero(0), one(1), m = water.solid_fraction;
     const L thickness = larger(depth / stretch, L(thinnest_soil));
     const L density = L(data.soil.fluid_density) + L(data.soil.grain_density - data.soil.fluid_density) * m;
@@ -93,8 +125,9 @@ HWY_INLINE L friction_of_soil(const StageData& data, const L& friction, const L&
     return select(friction > zero, share * larger(zero, angle), zero);
 }
 
+template <class L>
 HWY_INLINE Resistance<L> resistance_at(const StageData& data, std::ptrdiff_t i, const L& depth, const L& stretch,
-                                       const Water& water) {
+                                       const Water<L>& water) {
     const auto known = [&](const float* raster, float elsewhere) HWY_ATTR {
         if (raster == nullptr) return L(elsewhere);
         const L here = L::load(raster + i);
@@ -123,6 +156,7 @@ HWY_INLINE Resistance<L> resistance_at(const StageData& data, std::ptrdiff_t i, 
     return r;
 }
 
+template <class L>
 HWY_INLINE void keep(const Line<L>& line, const L& wall_before, const L& wall_after, const L& wave,
                      const L& limit_before, const L& limit_after, AxisRow& row, int j) {
     const Sides<L> sides = sides_of(line);
@@ -141,11 +175,12 @@ HWY_INLINE void keep(const Line<L>& line, const L& wall_before, const L& wall_af
 }
 
 /// Reconstructs the entries of a row from `begin` to before `end`; `i`: index of entry 0.
+template <class L>
 HWY_INLINE void reconstruct(const StageData& data, std::ptrdiff_t i, int begin, int end, Row& row, Numbers& speed) {
     const std::ptrdiff_t up = data.stride;
     const L zero(0), one(1), dry_limit(dry_depth), gravity(data.gravity), inverse_cell(data.inverse_cell);
     const L flow_scale(0.999999F / (data.inverse_cell * data.time_step));
-    for (int j = begin; j < end; j += lane_count) {
+    for (int j = begin; j < end; j += L::size) {
         const auto at = [&](const float* raster, std::ptrdiff_t offset)
                             HWY_ATTR { return L::load(raster + (i + j + offset)); };
         const float *h = data.from.depth, *u = data.from.u, *v = data.from.v;
@@ -204,7 +239,7 @@ HWY_INLINE void reconstruct(const StageData& data, std::ptrdiff_t i, int begin, 
         keep(y, wall_south, wall_north, gravity * flatness * (one - flatness * bed_y * bed_y), can_flow * out_south,
              can_flow * out_north, row.y, j);
 
-        Water at_rest{zero, zero, zero};
+        Water<L> at_rest{zero, zero, zero};
         if (data.from.pore_pressure != nullptr) {
             at_rest.pore_pressure = at(data.from.pore_pressure, 0);
             store(at_rest.pore_pressure, row.pore_pressure, j);
@@ -229,7 +264,7 @@ HWY_INLINE void reconstruct(const StageData& data, std::ptrdiff_t i, int begin, 
             store(height, row.height, j);
             store(upward + climb, row.upward, j);
             store(flight_square(own_u, own_v, upward, {height, climb}, gravity), row.square, j);
-            store(load(row.at_rest, j) * opaque(select(height > zero, zero, one)), row.at_rest, j);
+            store(load<L>(row.at_rest, j) * opaque(select(height > zero, zero, one)), row.at_rest, j);
         }
         store(gravity * flatness, row.lift, j);
         store(at(data.from.spare, 0), row.spare, j);

@@ -43,43 +43,64 @@ template <bool plain>
     Fastest fastest;
     // Row r of the segment is r + 1 here, so that the row before it is 0.
     for (int r = 0; r < tile_edge + 2; ++r) {
-        for (int tile = 0; r >= 2 && tile <= segment.tiles; ++tile) {
-            if (!live.faces_east(r - 2, tile)) continue;
+        const auto faces_east_of = [&]<class L>(int j, int end) HWY_ATTR {
             const Row& row = row_of(r - 1);
-            for (int j = tile * tile_edge; j <= width && j < (tile + 1) * tile_edge; j += lane_count) {
-                cross_faces(data.gravity, built, row, j, row, j + 1, true, scratch.x, j);
-                if (carries) cross_faces_with_pore_pressure(row, j, row, j + 1, evolves, scratch.x, j);
-                if (flies) cross_faces_in_flight(row, j, row, j + 1, scratch.x, j);
+            for (; j < end; j += L::size) {
+                cross_faces<L>(data.gravity, built, row, j, row, j + 1, true, scratch.x, j);
+                if (carries) cross_faces_with_pore_pressure<L>(row, j, row, j + 1, evolves, scratch.x, j);
+                if (flies) cross_faces_in_flight<L>(row, j, row, j + 1, scratch.x, j);
             }
+        };
+        for (int tile = 0; r >= 2 && tile < segment.tiles; ++tile) {
+            if (!live.cells(r - 2, tile)) continue;
+            const int before = tile * tile_edge;
+            if (!live.cells(r - 2, tile - 1)) faces_east_of.template operator()<Edge>(before, before + 1);
+            faces_east_of.template operator()<ForFaces>(before + 1, before + tile_edge + 1);
         }
-        for (int tile = 0; tile <= segment.tiles; ++tile) {
-            if (!live.reconstructed(r - 1, tile)) continue;
-            reconstruct(data, first + (r - 1) * static_cast<std::ptrdiff_t>(data.stride) - 1, tile * tile_edge,
-                        std::min((tile + 1) * tile_edge, width + 2), row_of(r),
-                        scratch.speed[static_cast<std::size_t>(r % 3)]);
+        const auto reconstruct_cells = [&]<class L>(int j, int end) HWY_ATTR {
+            reconstruct<L>(data, first + (r - 1) * static_cast<std::ptrdiff_t>(data.stride) - 1, j, end, row_of(r),
+                           scratch.speed[static_cast<std::size_t>(r % 3)]);
+        };
+        for (int tile = -1; tile <= segment.tiles; ++tile) {
+            const int before = tile * tile_edge;
+            if (live.beside(r - 1, tile)) {
+                reconstruct_cells.template operator()<ForCells>(before + 1, before + tile_edge + 1);
+                continue;
+            }
+            if (live.cells(r - 1, tile - 1)) reconstruct_cells.template operator()<Edge>(before + 1, before + 2);
+            if (live.cells(r - 1, tile + 1)) {
+                reconstruct_cells.template operator()<Edge>(before + tile_edge, before + tile_edge + 1);
+            }
         }
         if (r == 0) continue;
         Faces& faces = scratch.y[static_cast<std::size_t>(r & 1)];
         for (int tile = 0; tile < segment.tiles; ++tile) {
             if (!live.faces_between(r - 1, tile)) continue;
-            for (int j = tile * tile_edge + 1; j <= (tile + 1) * tile_edge; j += lane_count) {
-                cross_faces(data.gravity, built, row_of(r - 1), j, row_of(r), j, false, faces, j);
-                if (carries) cross_faces_with_pore_pressure(row_of(r - 1), j, row_of(r), j, evolves, faces, j);
-                if (flies) cross_faces_in_flight(row_of(r - 1), j, row_of(r), j, faces, j);
+            using L = ForFaces;
+            for (int j = tile * tile_edge + 1; j <= (tile + 1) * tile_edge; j += L::size) {
+                cross_faces<L>(data.gravity, built, row_of(r - 1), j, row_of(r), j, false, faces, j);
+                if (carries) cross_faces_with_pore_pressure<L>(row_of(r - 1), j, row_of(r), j, evolves, faces, j);
+                if (flies) cross_faces_in_flight<L>(row_of(r - 1), j, row_of(r), j, faces, j);
             }
         }
+        const std::ptrdiff_t west = first + (r - 2) * static_cast<std::ptrdiff_t>(data.stride) - 1;
         for (int tile = 0; r >= 2 && tile < segment.tiles; ++tile) {
-            for (int j = tile * tile_edge + 1; j <= (tile + 1) * tile_edge; j += lane_count) {
-                const std::ptrdiff_t i = first + (r - 2) * static_cast<std::ptrdiff_t>(data.stride) + (j - 1);
-                live.cells(r - 2, tile) ? update(data, scratch, r - 1, i, j, fastest) : leave_empty(data, i);
+            const bool computed_here = live.cells(r - 2, tile);
+            int j = tile * tile_edge + 1;
+            while (tile + 1 < segment.tiles && live.cells(r - 2, tile + 1) == computed_here) ++tile;
+            const int end = (tile + 1) * tile_edge + 1;
+            for (; !computed_here && j < end; j += Register::size) leave_empty<Register>(data, west + j);
+            for (; j + ForUpdates::size <= end; j += ForUpdates::size) {
+                update<ForUpdates>(data, scratch, r - 1, west + j, j, fastest);
             }
+            for (; j < end; j += Register::size) update<Register>(data, scratch, r - 1, west + j, j, fastest);
         }
     }
     for (int j = 1; j <= width; ++j) {
-        if (scratch.change[static_cast<std::size_t>(j)] > 0) changed[(j - 1) / tile_edge] = 1;
+        if (*scratch.change.at(j) > 0) changed[(j - 1) / tile_edge] = 1;
     }
     float result = 0;
-    for (int lane = 0; lane < lane_count; ++lane) {
+    for (int lane = 0; lane < register_lanes; ++lane) {
         const float one = fastest.largest.at(lane) + fastest.unknown.at(lane);
         if (!(one <= result)) result = one;
         if (std::isnan(one)) break;
