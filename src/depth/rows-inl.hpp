@@ -248,12 +248,16 @@ HWY_INLINE void reconstruct(const StageData& data, std::ptrdiff_t i, int begin, 
             at_rest.solid_fraction = at(data.from.solid_fraction, 0);
             store(at_rest.solid_fraction, row.solid_fraction, j);
         }
-        const Resistance<L> resistance = resistance_at(data, i + j, depth, stretch, at_rest);
-        const RestBalance<L> balance = rest_balance(rest_slope(x, inverse_cell), rest_slope(y, inverse_cell), bed_x,
-                                                    bed_y, square_stretch, gravity, depth, resistance);
-        const L held = opaque(select(balance.driving <= balance.resisting, one, zero));
-        const L still = opaque(select(larger(magnitude(own_u), magnitude(own_v)) <= zero, one, zero));
-        store(larger(opaque(select(dry, one, zero)), still * held), row.at_rest, j);
+        const L is_dry = opaque(select(dry, one, zero));
+        const L still = opaque(select(larger(magnitude(own_u), magnitude(own_v)) <= zero, one, zero)) * (one - is_dry);
+        L rests = is_dry;
+        if (any(still > zero)) {  // mostly of none
+            const Resistance<L> resistance = resistance_at(data, i + j, depth, stretch, at_rest);
+            const RestBalance<L> balance = rest_balance(rest_slope(x, inverse_cell), rest_slope(y, inverse_cell), bed_x,
+                                                        bed_y, square_stretch, gravity, depth, resistance);
+            rests = larger(rests, still * opaque(select(balance.driving <= balance.resisting, one, zero)));
+        }
+        store(rests, row.at_rest, j);
         store(bed_x, row.bed_x, j);
         store(bed_y, row.bed_y, j);
         const L upward = bed_x * own_u + bed_y * own_v;
