@@ -9,6 +9,7 @@
 
 #include <array>
 #include <hwy/highway.h>
+#include <type_traits>
 
 #include "depth/flight.hpp"
 #include "depth/formulas.hpp"
@@ -22,25 +23,14 @@ namespace talus::depth::HWY_NAMESPACE {
 constexpr int register_lanes = HWY_MAX_BYTES >= 64 ? 16 : HWY_MAX_BYTES >= 32 ? 8 : 4;
 static_assert(tile_edge % register_lanes == 0);
 using Register = simd::Lanes<register_lanes>;
-using Edge = simd::Lanes<4>;
-#ifndef PR
-#define PR 0
-#endif
-#ifndef PF
-#define PF 0
-#endif
-#ifndef PU
-#define PU 0
-#endif
-using Twice = simd::LanePair<register_lanes>;
-using ForCells = std::conditional_t<PR != 0, Twice, Register>;
-using ForFaces = std::conditional_t<PF != 0, Twice, Register>;
-using ForUpdates = std::conditional_t<PU != 0, Twice, Register>;
+using Edge = simd::Lanes<4>;  ///< for the cell or face at an end of a strip, and three more that nobody needs
+/// For updates, whose divisions and square roots follow one another; faces and cells gain nothing by it.
+using ForUpdates = std::conditional_t<HWY_MAX_BYTES >= 32, simd::LanePair<register_lanes>, Register>;
 
-// Numbers of a row of a segment. Entry 0 is the cell west of it; the last vector may extend beyond the cell east of it.
-constexpr int row_length = (largest_segment + 2) * tile_edge;
-struct alignas(64) Numbers {
-    std::array<float, row_length> numbers;
+/// Numbers of a row of a segment. Entry 0 is the cell west of it; an edge may extend beyond the cell east of it. Strips
+/// begin at cache lines.
+struct alignas(tile_edge * sizeof(float)) Numbers {
+    std::array<float, (largest_segment + 2) * tile_edge> numbers;
 
     [[nodiscard]] HWY_INLINE const float* at(int j) const { return numbers.data() + (j + tile_edge - 1); }
     [[nodiscard]] HWY_INLINE float* at(int j) { return numbers.data() + (j + tile_edge - 1); }

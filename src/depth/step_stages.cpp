@@ -55,7 +55,7 @@ template <bool plain>
             if (!live.cells(r - 2, tile)) continue;
             const int before = tile * tile_edge;
             if (!live.cells(r - 2, tile - 1)) faces_east_of.template operator()<Edge>(before, before + 1);
-            faces_east_of.template operator()<ForFaces>(before + 1, before + tile_edge + 1);
+            faces_east_of.template operator()<Register>(before + 1, before + tile_edge + 1);
         }
         const auto reconstruct_cells = [&]<class L>(int j, int end) HWY_ATTR {
             reconstruct<L>(data, first + (r - 1) * static_cast<std::ptrdiff_t>(data.stride) - 1, j, end, row_of(r),
@@ -64,7 +64,7 @@ template <bool plain>
         for (int tile = -1; tile <= segment.tiles; ++tile) {
             const int before = tile * tile_edge;
             if (live.beside(r - 1, tile)) {
-                reconstruct_cells.template operator()<ForCells>(before + 1, before + tile_edge + 1);
+                reconstruct_cells.template operator()<Register>(before + 1, before + tile_edge + 1);
                 continue;
             }
             if (live.cells(r - 1, tile - 1)) reconstruct_cells.template operator()<Edge>(before + 1, before + 2);
@@ -76,7 +76,7 @@ template <bool plain>
         Faces& faces = scratch.y[static_cast<std::size_t>(r & 1)];
         for (int tile = 0; tile < segment.tiles; ++tile) {
             if (!live.faces_between(r - 1, tile)) continue;
-            using L = ForFaces;
+            using L = Register;
             for (int j = tile * tile_edge + 1; j <= (tile + 1) * tile_edge; j += L::size) {
                 cross_faces<L>(data.gravity, built, row_of(r - 1), j, row_of(r), j, false, faces, j);
                 if (carries) cross_faces_with_pore_pressure<L>(row_of(r - 1), j, row_of(r), j, evolves, faces, j);
