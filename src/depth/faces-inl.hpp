@@ -14,8 +14,8 @@
 HWY_BEFORE_NAMESPACE();
 namespace talus::depth::HWY_NAMESPACE {
 
-/// Fluxes between entry j of `before` and entry k of `after`; the normal velocity of the axis is u, if `along_x`. If not
-/// `built`, no wall there is more than 1: dry ground.
+/// Fluxes between entry j of `before` and entry k of `after`; the normal velocity of the axis is u, if `along_x`. If
+/// not `built`, no wall there is more than 1: dry ground.
 template <class L>
 HWY_INLINE void cross_faces(float gravity, bool built, const Row& before, int j, const Row& after, int k, bool along_x,
                             Faces& faces, int to) {
@@ -101,8 +101,8 @@ template <class L>
 HWY_INLINE void cross_faces_with_pore_pressure(const Row& before, int j, const Row& after, int k, bool evolves,
                                                Faces& faces, int to) {
     const L mass = load<L>(faces.mass, to);
-    store(mass * select(mass > L(0), load<L>(before.pore_pressure, j), load<L>(after.pore_pressure, k)), faces.pore_pressure,
-          to);
+    store(mass * select(mass > L(0), load<L>(before.pore_pressure, j), load<L>(after.pore_pressure, k)),
+          faces.pore_pressure, to);
     if (!evolves) return;
     store(mass * select(mass > L(0), load<L>(before.solid_fraction, j), load<L>(after.solid_fraction, k)),
           faces.solid_fraction, to);

@@ -17,13 +17,17 @@ HWY_BEFORE_NAMESPACE();
 namespace talus::depth::HWY_NAMESPACE {
 namespace {
 
-template <bool plain>
+/// Compiled apart: with `structures` or inflows, and with `more`: flight, what debris carries, viscosity, laws besides
+/// Voellmy's, watched faces. A step without them does not pay for them.
+template <bool structures, bool more>
 [[gnu::flatten]] float advance_as(const StageData& given, const Segment& segment, std::uint8_t* changed,
                                   int* computed) {
     StageData data = given;
-    if (plain) {
+    if (!structures) {
         data.structure = nullptr;
         data.inflow = {};
+    }
+    if (!more) {
         data.from.pore_pressure = data.from.solid_fraction = data.from.height = data.from.climb = nullptr;
         data.cover.viscosity = nullptr;
         data.viscosity = 0;
@@ -109,11 +113,13 @@ template <bool plain>
 }
 
 float advance(const StageData& data, const Segment& segment, std::uint8_t* changed, int* computed) {
-    const bool plain = data.structure == nullptr && data.inflow.depth == nullptr && data.from.pore_pressure == nullptr &&
-                       data.from.height == nullptr && data.cover.viscosity == nullptr && !(data.viscosity > 0) &&
-                       !(data.laws.turbulent_thickness > 0) && !data.laws.samosat.on && data.passes_east == nullptr;
-    return plain ? advance_as<true>(data, segment, changed, computed)
-                 : advance_as<false>(data, segment, changed, computed);
+    const bool structures = data.structure != nullptr || data.inflow.depth != nullptr;
+    const bool more = data.from.pore_pressure != nullptr || data.from.height != nullptr ||
+                      data.cover.viscosity != nullptr || data.viscosity > 0 || data.laws.turbulent_thickness > 0 ||
+                      data.laws.samosat.on || data.passes_east != nullptr;
+    if (more) return advance_as<true, true>(data, segment, changed, computed);
+    return structures ? advance_as<true, false>(data, segment, changed, computed)
+                      : advance_as<false, false>(data, segment, changed, computed);
 }
 
 Stages make_stages() {

@@ -62,7 +62,7 @@ HWY_INLINE L mixed_after(const StageData& data, const Scratch& scratch, Numbers 
 /// After this stage alone.
 template <class L>
 HWY_INLINE Water<L> water_after(const StageData& data, const Scratch& scratch, int r, std::ptrdiff_t i, int j,
-                             const L& depth, const L& new_depth) {
+                                const L& depth, const L& new_depth) {
     L ratio(data.fresh_pore_pressure);
     Water<L> water{L(0), L(0), L(0)};
     if (data.from.solid_fraction != nullptr) {
@@ -142,7 +142,8 @@ HWY_INLINE void update(const StageData& data, Scratch& scratch, int r, std::ptrd
     };
 
     const auto force = [&](const AxisRow& axis, const L& after, const L& before) HWY_ATTR {
-        return (before - after - (load<L>(axis.before.depth, j) + load<L>(axis.after.depth, j)) * half * load<L>(axis.rise, j)) *
+        return (before - after -
+                (load<L>(axis.before.depth, j) + load<L>(axis.after.depth, j)) * half * load<L>(axis.rise, j)) *
                inverse_cell;
     };
     const L force_x = force(row.x, load<L>(x.pressure_before, j), load<L>(x.pressure_after, j - 1));
@@ -152,13 +153,16 @@ HWY_INLINE void update(const StageData& data, Scratch& scratch, int r, std::ptrd
     const L free = one - load<L>(row.at_rest, j);
     const L pull = free * gravity / (one + tilt);
     const L press =
-        (load<L>(x.press, j - 1) + load<L>(x.press, j) + load<L>(south.press, j) + load<L>(north.press, j)) * inverse_cell;
+        (load<L>(x.press, j - 1) + load<L>(x.press, j) + load<L>(south.press, j) + load<L>(north.press, j)) *
+        inverse_cell;
     const L curvature = free * press / square_stretch;
 
-    L new_depth = larger(
-        zero, depth - per_cell * (load<L>(x.mass, j) - load<L>(x.mass, j - 1) + (load<L>(north.mass, j) - load<L>(south.mass, j))));
-    const L out_x = load<L>(x.normal, j) - load<L>(x.normal, j - 1) + (load<L>(north.across, j) - load<L>(south.across, j));
-    const L out_y = load<L>(x.across, j) - load<L>(x.across, j - 1) + (load<L>(north.normal, j) - load<L>(south.normal, j));
+    L new_depth = larger(zero, depth - per_cell * (load<L>(x.mass, j) - load<L>(x.mass, j - 1) +
+                                                   (load<L>(north.mass, j) - load<L>(south.mass, j))));
+    const L out_x =
+        load<L>(x.normal, j) - load<L>(x.normal, j - 1) + (load<L>(north.across, j) - load<L>(south.across, j));
+    const L out_y =
+        load<L>(x.across, j) - load<L>(x.across, j - 1) + (load<L>(north.normal, j) - load<L>(south.normal, j));
     const bool flies = data.from.height != nullptr;
     const L hold = gravity * depth / (one + tilt) + curvature;  // below zero the ground would have to hold the debris
     const L new_height = flies ? larger(zero, carried_after(row.height, x.height, south.height, north.height, depth,
