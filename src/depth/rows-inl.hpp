@@ -24,8 +24,9 @@ constexpr int register_lanes = HWY_MAX_BYTES >= 64 ? 16 : HWY_MAX_BYTES >= 32 ? 
 static_assert(tile_edge % register_lanes == 0);
 using Register = simd::Lanes<register_lanes>;
 using Edge = simd::Lanes<4>;  ///< for the cell or face at an end of a strip, and three more that nobody needs
-/// For updates, whose divisions and square roots follow one another; faces and cells gain nothing by it.
-using ForUpdates = std::conditional_t<HWY_MAX_BYTES >= 32, simd::LanePair<register_lanes>, Register>;
+/// For updates, whose divisions and square roots follow one another: two registers at once, where each is half a strip.
+/// Faces and cells gain nothing by it, nor do longer registers.
+using ForUpdates = std::conditional_t<register_lanes == 8, simd::LanePair<8>, Register>;
 
 /// Numbers of a row of a segment. Entry 0 is the cell west of it; an edge may extend beyond the cell east of it. Strips
 /// begin at cache lines.

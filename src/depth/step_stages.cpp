@@ -65,16 +65,15 @@ template <bool structures, bool more>
             reconstruct<L>(data, first + (r - 1) * static_cast<std::ptrdiff_t>(data.stride) - 1, j, end, row_of(r),
                            scratch.speed[static_cast<std::size_t>(r % 3)]);
         };
-        for (int tile = -1; tile <= segment.tiles; ++tile) {
-            const int before = tile * tile_edge;
-            if (live.beside(r - 1, tile)) {
-                reconstruct_cells.template operator()<Register>(before + 1, before + tile_edge + 1);
-                continue;
-            }
-            if (live.cells(r - 1, tile - 1)) reconstruct_cells.template operator()<Edge>(before + 1, before + 2);
-            if (live.cells(r - 1, tile + 1)) {
-                reconstruct_cells.template operator()<Edge>(before + tile_edge, before + tile_edge + 1);
-            }
+        for (int tile = 0; tile < segment.tiles; ++tile) {
+            if (!live.beside(r - 1, tile)) continue;
+            reconstruct_cells.template operator()<Register>(tile * tile_edge + 1, (tile + 1) * tile_edge + 1);
+        }
+        for (int tile = -1; tile < segment.tiles; ++tile) {  // across the border east of the tile
+            const bool west = live.cells(r - 1, tile), east = live.cells(r - 1, tile + 1);
+            if (west == east || live.beside(r - 1, west ? tile + 1 : tile)) continue;
+            const int j = (tile + 1) * tile_edge + (west ? 1 : 0);
+            reconstruct_cells.template operator()<Edge>(j, j + 1);
         }
         if (r == 0) continue;
         Faces& faces = scratch.y[static_cast<std::size_t>(r & 1)];
@@ -89,15 +88,11 @@ template <bool structures, bool more>
         }
         const std::ptrdiff_t west = first + (r - 2) * static_cast<std::ptrdiff_t>(data.stride) - 1;
         for (int tile = 0; r >= 2 && tile < segment.tiles; ++tile) {
-            const bool computed_here = live.cells(r - 2, tile);
-            int j = tile * tile_edge + 1;
-            while (tile + 1 < segment.tiles && live.cells(r - 2, tile + 1) == computed_here) ++tile;
-            const int end = (tile + 1) * tile_edge + 1;
-            for (; !computed_here && j < end; j += Register::size) leave_empty<Register>(data, west + j);
-            for (; j + ForUpdates::size <= end; j += ForUpdates::size) {
-                update<ForUpdates>(data, scratch, r - 1, west + j, j, fastest);
+            using L = ForUpdates;
+            for (int j = tile * tile_edge + 1; j <= (tile + 1) * tile_edge; j += L::size) {
+                live.cells(r - 2, tile) ? update<L>(data, scratch, r - 1, west + j, j, fastest)
+                                        : leave_empty<L>(data, west + j);
             }
-            for (; j < end; j += Register::size) update<Register>(data, scratch, r - 1, west + j, j, fastest);
         }
     }
     for (int j = 1; j <= width; ++j) {
