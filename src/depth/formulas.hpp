@@ -49,7 +49,7 @@ TALUS_INLINE Real wall_beside(const Real& depth, const Real& beside, const Real&
 template <class Real>
 TALUS_INLINE Real surface_beside(const Real& depth, const Real& beside, const Real& bed_beside) {
     const Real surface = bed_beside + beside;
-    return select(wall_beside(depth, beside, bed_beside) > Real(0), depth, surface);
+    return select(beside <= Real(dry_depth), opaque(smaller(surface, depth)), surface);
 }
 
 /// 1 beside a structure whose top debris does not reach with the depth and the kinetic energy that it has, else 0.

@@ -11,6 +11,7 @@
 #include <cstdint>
 #include <hwy/highway.h>
 
+#include "depth/rows-inl.hpp"
 #include "depth/stages.hpp"
 
 HWY_BEFORE_NAMESPACE();
@@ -61,17 +62,13 @@ class Live {
     [[nodiscard]] HWY_INLINE bool cells(int row, int tile) const {
         return row >= 0 && row < tile_edge && tile >= 0 && tile < tiles_ && of(row, tile);
     }
-    /// Whether faces are needed: those between the strips of two rows, and those in a row east of the cells from the
-    /// one before a strip on.
+    /// Whether the faces between the strips of two rows are needed.
     [[nodiscard]] HWY_INLINE bool faces_between(int row, int tile) const {
         return cells(row - 1, tile) || cells(row, tile);
     }
-    [[nodiscard]] HWY_INLINE bool faces_east(int row, int tile) const {
-        return cells(row, tile) || cells(row, tile - 1);
-    }
-    /// Whether the cells from the one before a strip on must be reconstructed.
-    [[nodiscard]] HWY_INLINE bool reconstructed(int row, int tile) const {
-        return faces_east(row - 1, tile) || faces_east(row, tile) || faces_east(row + 1, tile);
+    /// Whether cells of a strip, or those of the next row on either side, are computed.
+    [[nodiscard]] HWY_INLINE bool beside(int row, int tile) const {
+        return cells(row - 1, tile) || cells(row, tile) || cells(row + 1, tile);
     }
     [[nodiscard]] int count() const {
         int count = 0;
@@ -88,9 +85,14 @@ class Live {
 
     /// Not a number counts as debris: it must be found.
     static HWY_INLINE bool any_of(const float* depth, int cells) {
-        bool any = false;
-        for (int k = 0; k < cells; ++k) any |= !(depth[k] <= 0);
-        return any;
+        bool found = false;
+        if (cells % register_lanes == 0) {
+            const Register zero(0);
+            for (int k = 0; k < cells; k += register_lanes) found |= any(!(Register::load(depth + k) <= zero));
+        } else {
+            for (int k = 0; k < cells; ++k) found |= !(depth[k] <= 0);
+        }
+        return found;
     }
     static HWY_INLINE bool holds(const StageData& data, std::ptrdiff_t i, int cells) {
         return any_of(data.from.depth + i, cells) ||

@@ -9,29 +9,41 @@
 
 #include <array>
 #include <hwy/highway.h>
+#include <type_traits>
 
 #include "depth/flight.hpp"
 #include "depth/formulas.hpp"
 #include "depth/soil.hpp"
 #include "depth/stages.hpp"
-#include "simd/lanes.hpp"
+#include "simd/lane_pairs.hpp"
 
 HWY_BEFORE_NAMESPACE();
 namespace talus::depth::HWY_NAMESPACE {
 
-constexpr int lane_count = HWY_MAX_BYTES >= 64 ? 16 : HWY_MAX_BYTES >= 32 ? 8 : 4;
-static_assert(tile_edge % lane_count == 0);
-using L = simd::Lanes<lane_count>;
+constexpr int register_lanes = HWY_MAX_BYTES >= 64 ? 16 : HWY_MAX_BYTES >= 32 ? 8 : 4;
+static_assert(tile_edge % register_lanes == 0);
+using Register = simd::Lanes<register_lanes>;
+using Edge = simd::Lanes<4>;  ///< for the cell or face at an end of a strip, and three more that nobody needs
+/// For updates, whose divisions and square roots follow one another: two registers at once, where each is half a strip.
+/// Faces and cells gain nothing by it, nor do longer registers.
+using ForUpdates = std::conditional_t<register_lanes == 8, simd::LanePair<8>, Register>;
 
-// Numbers of a row of a segment. Entry 0 is the cell west of it; the last vector may extend beyond the cell east of it.
-constexpr int row_length = (largest_segment + 2) * tile_edge;
-using Numbers = std::array<float, row_length>;
+/// Numbers of a row of a segment. Entry 0 is the cell west of it; an edge may extend beyond the cell east of it. Strips
+/// begin at cache lines.
+struct alignas(tile_edge * sizeof(float)) Numbers {
+    std::array<float, (largest_segment + 2) * tile_edge> numbers;
 
+    [[nodiscard]] HWY_INLINE const float* at(int j) const { return numbers.data() + (j + tile_edge - 1); }
+    [[nodiscard]] HWY_INLINE float* at(int j) { return numbers.data() + (j + tile_edge - 1); }
+};
+
+template <class L>
 HWY_INLINE L load(const Numbers& from, int j) {
-    return L::load(from.data() + j);
+    return L::load(from.at(j));
 }
+template <class L>
 HWY_INLINE void store(const L& numbers, Numbers& to, int j) {
-    numbers.store(to.data() + j);
+    numbers.store(to.at(j));
 }
 
 /// What the faces on one side of a row of cells see of them.
@@ -69,11 +81,21 @@ struct Scratch {
 };
 
 struct Fastest {
-    L largest = L(0);
-    L unknown = L(0);  ///< 0, or NaN if there was one
+    Register largest = Register(0);
+    Register unknown = Register(0);  ///< 0, or NaN if there was one
+
+    HWY_INLINE void take(const Register& signal) {
+        largest = larger(largest, signal);
+        unknown = unknown + signal * Register(0);
+    }
+    HWY_INLINE void take(const simd::LanePair<register_lanes>& signal) {
+        take(signal.a);
+        take(signal.b);
+    }
 };
 
 /// What goes with the mass and resists.
+template <class L>
 struct Water {
     L pore_pressure;   ///< if it is carried
     L solid_fraction;  ///< if pore pressure evolves
@@ -81,8 +103,9 @@ struct Water {
 };
 
 /// Friction of soil whose pore pressure evolves: (1 - lambda) tan(phi + psi), see sim/physics/pore_pressure.hpp.
+template <class L>
 HWY_INLINE L friction_of_soil(const StageData& data, const L& friction, const L& depth, const L& stretch,
-                              const Water& water) {
+                              const Water<L>& water) {
     const L zero(0), one(1), m = water.solid_fraction;
     const L thickness = larger(depth / stretch, L(thinnest_soil));
     const L density = L(data.soil.fluid_density) + L(data.soil.grain_density - data.soil.fluid_density) * m;
@@ -93,8 +116,9 @@ HWY_INLINE L friction_of_soil(const StageData& data, const L& friction, const L&
     return select(friction > zero, share * larger(zero, angle), zero);
 }
 
+template <class L>
 HWY_INLINE Resistance<L> resistance_at(const StageData& data, std::ptrdiff_t i, const L& depth, const L& stretch,
-                                       const Water& water) {
+                                       const Water<L>& water) {
     const auto known = [&](const float* raster, float elsewhere) HWY_ATTR {
         if (raster == nullptr) return L(elsewhere);
         const L here = L::load(raster + i);
@@ -123,6 +147,7 @@ HWY_INLINE Resistance<L> resistance_at(const StageData& data, std::ptrdiff_t i, 
     return r;
 }
 
+template <class L>
 HWY_INLINE void keep(const Line<L>& line, const L& wall_before, const L& wall_after, const L& wave,
                      const L& limit_before, const L& limit_after, AxisRow& row, int j) {
     const Sides<L> sides = sides_of(line);
@@ -141,11 +166,12 @@ HWY_INLINE void keep(const Line<L>& line, const L& wall_before, const L& wall_af
 }
 
 /// Reconstructs the entries of a row from `begin` to before `end`; `i`: index of entry 0.
+template <class L>
 HWY_INLINE void reconstruct(const StageData& data, std::ptrdiff_t i, int begin, int end, Row& row, Numbers& speed) {
     const std::ptrdiff_t up = data.stride;
     const L zero(0), one(1), dry_limit(dry_depth), gravity(data.gravity), inverse_cell(data.inverse_cell);
     const L flow_scale(0.999999F / (data.inverse_cell * data.time_step));
-    for (int j = begin; j < end; j += lane_count) {
+    for (int j = begin; j < end; j += L::size) {
         const auto at = [&](const float* raster, std::ptrdiff_t offset)
                             HWY_ATTR { return L::load(raster + (i + j + offset)); };
         const float *h = data.from.depth, *u = data.from.u, *v = data.from.v;
@@ -204,7 +230,7 @@ HWY_INLINE void reconstruct(const StageData& data, std::ptrdiff_t i, int begin, 
         keep(y, wall_south, wall_north, gravity * flatness * (one - flatness * bed_y * bed_y), can_flow * out_south,
              can_flow * out_north, row.y, j);
 
-        Water at_rest{zero, zero, zero};
+        Water<L> at_rest{zero, zero, zero};
         if (data.from.pore_pressure != nullptr) {
             at_rest.pore_pressure = at(data.from.pore_pressure, 0);
             store(at_rest.pore_pressure, row.pore_pressure, j);
@@ -213,12 +239,16 @@ HWY_INLINE void reconstruct(const StageData& data, std::ptrdiff_t i, int begin, 
             at_rest.solid_fraction = at(data.from.solid_fraction, 0);
             store(at_rest.solid_fraction, row.solid_fraction, j);
         }
-        const Resistance<L> resistance = resistance_at(data, i + j, depth, stretch, at_rest);
-        const RestBalance<L> balance = rest_balance(rest_slope(x, inverse_cell), rest_slope(y, inverse_cell), bed_x,
-                                                    bed_y, square_stretch, gravity, depth, resistance);
-        const L held = opaque(select(balance.driving <= balance.resisting, one, zero));
-        const L still = opaque(select(larger(magnitude(own_u), magnitude(own_v)) <= zero, one, zero));
-        store(larger(opaque(select(dry, one, zero)), still * held), row.at_rest, j);
+        const L is_dry = opaque(select(dry, one, zero));
+        const L still = opaque(select(larger(magnitude(own_u), magnitude(own_v)) <= zero, one, zero)) * (one - is_dry);
+        L rests = is_dry;
+        if (any(still > zero)) {  // mostly of none
+            const Resistance<L> resistance = resistance_at(data, i + j, depth, stretch, at_rest);
+            const RestBalance<L> balance = rest_balance(rest_slope(x, inverse_cell), rest_slope(y, inverse_cell), bed_x,
+                                                        bed_y, square_stretch, gravity, depth, resistance);
+            rests = larger(rests, still * opaque(select(balance.driving <= balance.resisting, one, zero)));
+        }
+        store(rests, row.at_rest, j);
         store(bed_x, row.bed_x, j);
         store(bed_y, row.bed_y, j);
         const L upward = bed_x * own_u + bed_y * own_v;
@@ -229,7 +259,7 @@ HWY_INLINE void reconstruct(const StageData& data, std::ptrdiff_t i, int begin, 
             store(height, row.height, j);
             store(upward + climb, row.upward, j);
             store(flight_square(own_u, own_v, upward, {height, climb}, gravity), row.square, j);
-            store(load(row.at_rest, j) * opaque(select(height > zero, zero, one)), row.at_rest, j);
+            store(load<L>(row.at_rest, j) * opaque(select(height > zero, zero, one)), row.at_rest, j);
         }
         store(gravity * flatness, row.lift, j);
         store(at(data.from.spare, 0), row.spare, j);

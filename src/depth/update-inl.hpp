@@ -26,20 +26,22 @@ constexpr float largest_spare = 0.5F;
 
 /// Pore pressure or solid fraction of debris of `depth` after a stage, with `content` of it times depth: rounding must
 /// not take it beyond the values it is a mean of.
+template <class L>
 HWY_INLINE L mixed(const L& content, const L& depth, const L& own, const L& low, const L& high) {
     const L mean = smaller(larger(content / larger(depth, L(1e-12F)), low), high);
     return select(depth > L(1e-12F), mean, own);
 }
 
 /// Pore pressure, or solid fraction, of a cell after this stage alone. `raster`: of it; `fresh`: of what comes in.
+template <class L>
 HWY_INLINE L mixed_after(const StageData& data, const Scratch& scratch, Numbers Row::*of_row, Numbers Faces::*of_faces,
                          const float* raster, const L& fresh, int r, std::ptrdiff_t i, int j, const L& depth,
                          const L& new_depth) {
     const Row& row = scratch.rows[static_cast<std::size_t>(r & 1)];
     const Numbers &x = scratch.x.*of_faces, &south = scratch.y[static_cast<std::size_t>(r & 1)].*of_faces;
     const Numbers& north = scratch.y[static_cast<std::size_t>((r + 1) & 1)].*of_faces;
-    const L dt(data.time_step), per_cell = dt * L(data.inverse_cell), own = load(row.*of_row, j);
-    L content = depth * own - per_cell * (load(x, j) - load(x, j - 1) + (load(north, j) - load(south, j)));
+    const L dt(data.time_step), per_cell = dt * L(data.inverse_cell), own = load<L>(row.*of_row, j);
+    L content = depth * own - per_cell * (load<L>(x, j) - load<L>(x, j - 1) + (load<L>(north, j) - load<L>(south, j)));
     L low(1e30F), high(0);
     const auto bound_by = [&](const L& brings, const L& value) HWY_ATTR {
         low = smaller(low, select(brings > L(0), value, low));
@@ -58,10 +60,11 @@ HWY_INLINE L mixed_after(const StageData& data, const Scratch& scratch, Numbers 
 }
 
 /// After this stage alone.
-HWY_INLINE Water water_after(const StageData& data, const Scratch& scratch, int r, std::ptrdiff_t i, int j,
-                             const L& depth, const L& new_depth) {
+template <class L>
+HWY_INLINE Water<L> water_after(const StageData& data, const Scratch& scratch, int r, std::ptrdiff_t i, int j,
+                                const L& depth, const L& new_depth) {
     L ratio(data.fresh_pore_pressure);
-    Water water{L(0), L(0), L(0)};
+    Water<L> water{L(0), L(0), L(0)};
     if (data.from.solid_fraction != nullptr) {
         L fresh(data.soil.solid_fraction);
         if (data.inflow.grains != nullptr) {
@@ -78,7 +81,8 @@ HWY_INLINE Water water_after(const StageData& data, const Scratch& scratch, int 
 
 /// Soil at the end of a step in which pore pressure evolves. Where the flow stretches it thins: dh/dt = -h div u, by
 /// the velocities of the debris around.
-HWY_INLINE sim::Soil<L> evolved(const StageData& data, std::ptrdiff_t i, const Water& water, const L& depth,
+template <class L>
+HWY_INLINE sim::Soil<L> evolved(const StageData& data, std::ptrdiff_t i, const Water<L>& water, const L& depth,
                                 const L& stretch) {
     const L zero(0), one(1), half(0.5F), two(2), dry(dry_depth);
     const auto gradient = [&](const float* velocity, std::ptrdiff_t step) HWY_ATTR {
@@ -99,13 +103,15 @@ HWY_INLINE sim::Soil<L> evolved(const StageData& data, std::ptrdiff_t i, const W
 }
 
 /// What goes with the mass, per mass, after this stage alone.
+template <class L>
 HWY_INLINE L carried_after(const Numbers& own, const Numbers& x, const Numbers& south, const Numbers& north,
                            const L& depth, const L& new_depth, const L& per_cell, int j) {
-    const L out = load(x, j) - load(x, j - 1) + (load(north, j) - load(south, j));
-    return (depth * load(own, j) - per_cell * out) / larger(new_depth, L(dry_depth));
+    const L out = load<L>(x, j) - load<L>(x, j - 1) + (load<L>(north, j) - load<L>(south, j));
+    return (depth * load<L>(own, j) - per_cell * out) / larger(new_depth, L(dry_depth));
 }
 
-/// Leaves lane_count cells empty.
+/// Leaves L::size cells empty.
+template <class L>
 HWY_INLINE void leave_empty(const StageData& data, std::ptrdiff_t i) {
     const L zero(0);
     for (float* raster : {data.to.depth, data.to.u, data.to.v, data.to.spare}) zero.store(raster + i);
@@ -115,19 +121,20 @@ HWY_INLINE void leave_empty(const StageData& data, std::ptrdiff_t i) {
     }
 }
 
-/// Updates lane_count cells at index i, entry j of the row.
+/// Updates L::size cells at index i, entry j of the row.
+template <class L>
 HWY_INLINE void update(const StageData& data, Scratch& scratch, int r, std::ptrdiff_t i, int j, Fastest& fastest) {
     const Row& row = scratch.rows[static_cast<std::size_t>(r & 1)];
     const Faces &x = scratch.x, &south = scratch.y[static_cast<std::size_t>(r & 1)];
     const Faces& north = scratch.y[static_cast<std::size_t>((r + 1) & 1)];
     if (data.passes_east != nullptr) {
-        load(x.mass, j).store(data.passes_east + i);
-        load(north.mass, j).store(data.passes_north + i);
+        load<L>(x.mass, j).store(data.passes_east + i);
+        load<L>(north.mass, j).store(data.passes_north + i);
     }
     const L zero(0), half(0.5F), one(1), gravity(data.gravity), inverse_cell(data.inverse_cell);
     const L dt(data.time_step), per_cell = dt * inverse_cell;
     const L depth = L::load(data.from.depth + i), u = L::load(data.from.u + i), v = L::load(data.from.v + i);
-    const L bed_x = load(row.bed_x, j), bed_y = load(row.bed_y, j);
+    const L bed_x = load<L>(row.bed_x, j), bed_y = load<L>(row.bed_y, j);
     const L square_stretch = one + bed_x * bed_x + bed_y * bed_y, stretch = sqrt(square_stretch);
     const auto square = [&](const L& by_x, const L& by_y) HWY_ATTR {
         const L upward = bed_x * by_x + bed_y * by_y;
@@ -135,23 +142,27 @@ HWY_INLINE void update(const StageData& data, Scratch& scratch, int r, std::ptrd
     };
 
     const auto force = [&](const AxisRow& axis, const L& after, const L& before) HWY_ATTR {
-        return (before - after - (load(axis.before.depth, j) + load(axis.after.depth, j)) * half * load(axis.rise, j)) *
+        return (before - after -
+                (load<L>(axis.before.depth, j) + load<L>(axis.after.depth, j)) * half * load<L>(axis.rise, j)) *
                inverse_cell;
     };
-    const L force_x = force(row.x, load(x.pressure_before, j), load(x.pressure_after, j - 1));
-    const L force_y = force(row.y, load(north.pressure_before, j), load(south.pressure_after, j));
+    const L force_x = force(row.x, load<L>(x.pressure_before, j), load<L>(x.pressure_after, j - 1));
+    const L force_y = force(row.y, load<L>(north.pressure_before, j), load<L>(south.pressure_after, j));
     // The gravity correction of Xia & Liang (2018): on a sheet cos^2 of the slope, on a lake 1.
-    const L tilt = larger(zero, (bed_x * load(row.x.rise, j) + bed_y * load(row.y.rise, j)) * inverse_cell);
-    const L free = one - load(row.at_rest, j);
+    const L tilt = larger(zero, (bed_x * load<L>(row.x.rise, j) + bed_y * load<L>(row.y.rise, j)) * inverse_cell);
+    const L free = one - load<L>(row.at_rest, j);
     const L pull = free * gravity / (one + tilt);
     const L press =
-        (load(x.press, j - 1) + load(x.press, j) + load(south.press, j) + load(north.press, j)) * inverse_cell;
+        (load<L>(x.press, j - 1) + load<L>(x.press, j) + load<L>(south.press, j) + load<L>(north.press, j)) *
+        inverse_cell;
     const L curvature = free * press / square_stretch;
 
-    L new_depth = larger(
-        zero, depth - per_cell * (load(x.mass, j) - load(x.mass, j - 1) + (load(north.mass, j) - load(south.mass, j))));
-    const L out_x = load(x.normal, j) - load(x.normal, j - 1) + (load(north.across, j) - load(south.across, j));
-    const L out_y = load(x.across, j) - load(x.across, j - 1) + (load(north.normal, j) - load(south.normal, j));
+    L new_depth = larger(zero, depth - per_cell * (load<L>(x.mass, j) - load<L>(x.mass, j - 1) +
+                                                   (load<L>(north.mass, j) - load<L>(south.mass, j))));
+    const L out_x =
+        load<L>(x.normal, j) - load<L>(x.normal, j - 1) + (load<L>(north.across, j) - load<L>(south.across, j));
+    const L out_y =
+        load<L>(x.across, j) - load<L>(x.across, j - 1) + (load<L>(north.normal, j) - load<L>(south.normal, j));
     const bool flies = data.from.height != nullptr;
     const L hold = gravity * depth / (one + tilt) + curvature;  // below zero the ground would have to hold the debris
     const L new_height = flies ? larger(zero, carried_after(row.height, x.height, south.height, north.height, depth,
@@ -169,14 +180,14 @@ HWY_INLINE void update(const StageData& data, Scratch& scratch, int r, std::ptrd
     // What debris may move with: its kinetic energy and what is spare, and what comes through the faces and falls there
     // from the bed of one cell to that of the other, over density and area. What depth alone has (lift h^2 / 2) is left
     // out, since single precision would lose the rest in it.
-    const L lift = load(row.lift, j), head = lift * depth, bed = L::load(data.bed + i);
-    const L square_speed = flies ? load(row.square, j) : square(u, v);
+    const L lift = load<L>(row.lift, j), head = lift * depth, bed = L::load(data.bed + i);
+    const L square_speed = flies ? load<L>(row.square, j) : square(u, v);
     const std::ptrdiff_t up = data.stride;
     const auto out = [&](const Faces& faces, int at, std::ptrdiff_t beside) HWY_ATTR {
-        return load(faces.energy, at) +
-               load(faces.mass, at) * (half * gravity * (L::load(data.bed + (i + beside)) - bed) - head);
+        return load<L>(faces.energy, at) +
+               load<L>(faces.mass, at) * (half * gravity * (L::load(data.bed + (i + beside)) - bed) - head);
     };
-    L energy = depth * (half * square_speed + load(row.spare, j)) -
+    L energy = depth * (half * square_speed + load<L>(row.spare, j)) -
                per_cell * (out(x, j, 1) - out(x, j - 1, -1) + (out(north, j, up) - out(south, j, -up)));
     if (data.inflow.depth != nullptr) {
         const L comes = L::load(data.inflow.depth + i);
@@ -193,7 +204,7 @@ HWY_INLINE void update(const StageData& data, Scratch& scratch, int r, std::ptrd
 
     const bool carries = data.from.pore_pressure != nullptr;
     const bool evolves = data.from.solid_fraction != nullptr;
-    Water water{zero, zero, zero};
+    Water<L> water{zero, zero, zero};
     if (carries) water = water_after(data, scratch, r, i, j, depth, new_depth);
     if (evolves) water.speed = sqrt(square(u, v));
 
@@ -224,11 +235,11 @@ HWY_INLINE void update(const StageData& data, Scratch& scratch, int r, std::ptrd
         select(moves > zero, left / (larger(momentum, L(1e-30F)) * larger(new_depth, L(dry_depth))), zero);
     L new_u = m_x * to_speed, new_v = m_y * to_speed;
     // Emptied cells keep no momentum without mass: no faster than the fastest around, its front and free fall.
-    bound = larger(bound, load(scratch.speed[static_cast<std::size_t>(r % 3)], j));
-    bound = larger(bound, larger(load(scratch.speed[static_cast<std::size_t>(r % 3)], j - 1),
-                                 load(scratch.speed[static_cast<std::size_t>(r % 3)], j + 1)));
-    bound = larger(bound, larger(load(scratch.speed[static_cast<std::size_t>((r + 1) % 3)], j),
-                                 load(scratch.speed[static_cast<std::size_t>((r + 2) % 3)], j)));
+    bound = larger(bound, load<L>(scratch.speed[static_cast<std::size_t>(r % 3)], j));
+    bound = larger(bound, larger(load<L>(scratch.speed[static_cast<std::size_t>(r % 3)], j - 1),
+                                 load<L>(scratch.speed[static_cast<std::size_t>(r % 3)], j + 1)));
+    bound = larger(bound, larger(load<L>(scratch.speed[static_cast<std::size_t>((r + 1) % 3)], j),
+                                 load<L>(scratch.speed[static_cast<std::size_t>((r + 2) % 3)], j)));
     bound = bound + gravity * dt;
     const L speed = sqrt(new_u * new_u + new_v * new_v);
     const L slower = select(speed > bound, bound / larger(speed, L(1e-30F)), one);
@@ -244,7 +255,7 @@ HWY_INLINE void update(const StageData& data, Scratch& scratch, int r, std::ptrd
     };
     L spare = energy - half * (lift * deeper * deeper + new_depth * square_of(new_u, new_v, flight));
     const auto difference = [](const L& a, const L& b) HWY_ATTR { return magnitude(a - b); };
-    L change = load(scratch.change, j) + difference(new_depth, depth) + difference(new_u, u) + difference(new_v, v);
+    L change = load<L>(scratch.change, j) + difference(new_depth, depth) + difference(new_u, u) + difference(new_v, v);
     if (data.second) {
         const L old_depth = L::load(data.to.depth + i);
         const L old_u = L::load(data.to.u + i), old_v = L::load(data.to.v + i);
@@ -290,10 +301,9 @@ HWY_INLINE void update(const StageData& data, Scratch& scratch, int r, std::ptrd
         const L taken = smaller(wanted, most);
         spare = half * smaller(allowed - taken, L(largest_spare) * (taken + lift * to_depth * to_depth));
         change = change + difference(to_depth, old_depth) + difference(new_u, old_u) + difference(new_v, old_v);
-        const L signal = select(to_depth <= L(dry_depth), zero,
+        const L signal = select(opaque(to_depth) <= L(dry_depth), zero,
                                 magnitude(new_u) + magnitude(new_v) + L(2) * sqrt(gravity * to_depth));
-        fastest.largest = larger(fastest.largest, signal);
-        fastest.unknown = fastest.unknown + signal * zero;
+        fastest.take(signal);
     }
     spare = select(to_depth <= L(dry_depth), zero, spare / larger(to_depth, L(dry_depth)));
     spare.store(data.to.spare + i);
@@ -303,7 +313,7 @@ HWY_INLINE void update(const StageData& data, Scratch& scratch, int r, std::ptrd
         flight.climb.store(data.to.climb + i);
     }
     if (carries) {
-        change = change + difference(water.pore_pressure, load(row.pore_pressure, j));
+        change = change + difference(water.pore_pressure, load<L>(row.pore_pressure, j));
         if (data.second) {
             const L old_depth = L::load(data.to.depth + i), before = L::load(data.to.pore_pressure + i);
             const auto mean = [&](const L& kept, const L& now) HWY_ATTR {

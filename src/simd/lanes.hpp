@@ -26,6 +26,24 @@ struct alignas(32) Oct {
     }
 using FourFloats = float __attribute__((vector_size(16)));
 using EightFloats = float __attribute__((vector_size(32)));
+using FourInts = std::int32_t __attribute__((vector_size(16)));
+using EightInts = std::int32_t __attribute__((vector_size(32)));
+using SixteenInts = std::int32_t __attribute__((vector_size(64)));
+using TwoLongs = std::int64_t __attribute__((vector_size(16)));
+
+TALUS_INLINE bool any_bit(const FourInts& bits) {
+    TwoLongs halves;
+    __builtin_memcpy(&halves, &bits, sizeof halves);
+    return (halves[0] | halves[1]) != 0;
+}
+TALUS_INLINE bool any_bit(const EightInts& bits) {
+    return any_bit(__builtin_shufflevector(bits, bits, 0, 1, 2, 3) | __builtin_shufflevector(bits, bits, 4, 5, 6, 7));
+}
+
+TALUS_INLINE bool any_bit(const SixteenInts& bits) {
+    return any_bit(__builtin_shufflevector(bits, bits, 0, 1, 2, 3, 4, 5, 6, 7) |
+                   __builtin_shufflevector(bits, bits, 8, 9, 10, 11, 12, 13, 14, 15));
+}
 
 template <int count>
 struct LaneTypes;
@@ -147,12 +165,10 @@ struct LaneMask {
     TALUS_INLINE friend LaneMask operator!(const LaneMask& a) { return {~a.bits}; }
     [[nodiscard]] bool at(int lane) const { return bits[lane] != 0; }
     TALUS_INLINE friend bool any(const LaneMask& a) {
-#ifdef __wasm_simd128__  // where Clang keeps a loop over the lanes, in memory
+#ifdef __wasm_simd128__
         return __builtin_wasm_any_true_v128(a.bits);
 #else
-        std::int32_t all = 0;
-        for (int lane = 0; lane < count; ++lane) all |= a.bits[lane];
-        return all != 0;
+        return any_bit(a.bits);  // halves: of a loop over the lanes GCC and Clang take each out of the register
 #endif
     }
 };
