@@ -91,21 +91,22 @@ TALUS_STAGE void enforce_boundaries(const StageData& data, std::size_t first, st
         const L distance = length(displacement);
         const L parts = select(distance > max_part,
                                from_index<L>(truncated(smaller(L(max_parts), distance / max_part))) + L(1), L(1));
-        Mask doubtful = (parts > L(max_parts)) | (length(shift) > max_part) | !(distance == distance);
+        // As numbers: masks that are combined are taken apart lane by lane (see opaque).
+        const auto flag = [](const Mask& mask) TALUS_INLINE_LAMBDA { return opaque(select(mask, L(1), L(0))); };
+        L doubtful =
+            larger(larger(flag(parts > L(max_parts)), flag(length(shift) > max_part)), flag(distance != distance));
         for (int part = 1; part <= max_parts; ++part) {
             const Mask on_the_way = L(part) <= parts;
             if (!any(on_the_way)) break;
             const V3 p = start + displacement * (L(part) / parts);
-            doubtful = doubtful | (on_the_way & below_ground(select(L(part) == parts, end, p)));
+            doubtful = larger(doubtful, flag(on_the_way) * flag(below_ground(select(L(part) == parts, end, p))));
         }
         const V3 shifted = end + shift;
-        doubtful = doubtful | below_ground(shifted) | at.near_walls(end);
-        const Mask moves = at.moves();
-        doubtful = doubtful & moves;
-        at.store(select(moves, shifted, start), data.work.end, at.i);
-        if (!any(doubtful)) return;
+        doubtful = larger(larger(doubtful, flag(below_ground(shifted))), flag(at.near_walls(end))) * at.mobile();
+        at.store(select(at.moves(), shifted, start), data.work.end, at.i);
+        if (!any(doubtful > L(0))) return;
         for (int lane = 0; lane < lane_count; ++lane) {
-            if (!doubtful.at(lane)) continue;
+            if (!(doubtful.at(lane) > 0)) continue;
             enforce_particle(data.model, data.ground, data.state, data.work, at.i + static_cast<std::size_t>(lane));
         }
     });

@@ -125,18 +125,18 @@ template <class At>
 TALUS_INLINE void update_sleep(const At& at) {
     using Real = typename At::Real;
     const Vec3<Real> velocity = at.velocity();
-    const Real square = dot(velocity, velocity);
-    const auto moves = at.moves();
-    const Real still = select(both(moves, square < Real(at.step().sleep_square)),
-                              at.still_time() + Real(at.step().time_step), Real(0));
+    const Real square = dot(velocity, velocity), mobile = at.mobile();
+    // Conditions are combined as numbers: see opaque().
+    const Real slow = opaque(select(square < Real(at.step().sleep_square), Real(1), Real(0))) * mobile;
+    const Real still = select(slow > Real(0), at.still_time() + Real(at.step().time_step), Real(0));
     at.set_still_time(still);
-    auto sleeps = both(moves, still > Real(at.step().rest_duration));
+    auto sleeps = still > Real(at.step().rest_duration);
     if (at.model().evolving_pressure.on && any(sleeps)) {
         sleeps = both(sleeps, in_balance(at.model().evolving_pressure, at.soil()));
     }
     if (at.step().water_rises && any(sleeps)) sleeps = both(sleeps, at.water().ratio < Real(0));
     if (any(sleeps)) at.put_to_sleep(sleeps);
-    const auto wakes = both(moves, square > Real(at.step().wake_square));
+    const auto wakes = square * mobile > Real(at.step().wake_square);
     if (any(wakes)) at.wake_neighbours(wakes);
 }
 
