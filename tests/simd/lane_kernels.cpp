@@ -4,8 +4,10 @@
 #include <hwy/foreach_target.h>
 // (must come after foreach_target)
 #include <hwy/highway.h>
+#include <type_traits>
 
 #include "simd/lane_kernels.hpp"
+#include "simd/lane_pairs.hpp"
 
 HWY_BEFORE_NAMESPACE();
 namespace talus::test::HWY_NAMESPACE {
@@ -17,11 +19,15 @@ static_assert(block % lane_count == 0);
 using L = simd::Lanes<lane_count>;
 using Mask = simd::LaneMask<lane_count>;
 using I = simd::LaneInts<lane_count>;
+using Pair = simd::LanePair<(lane_count > 8 ? 8 : lane_count)>;
+static_assert(block % Pair::size == 0);
 
 HWY_INLINE L load(const Floats& from, std::size_t i) {
     return L::load(from.data() + i);
 }
-HWY_INLINE void put(const L& numbers, Floats& to, std::size_t i) {
+template <class Number>
+requires(!std::is_same_v<Number, Mask> && !std::is_same_v<Number, I>) HWY_INLINE
+    void put(const Number& numbers, Floats& to, std::size_t i) {
     numbers.store(to.data() + i);
 }
 HWY_INLINE void put(const Mask& mask, Flags& to, std::size_t i) {
@@ -47,23 +53,34 @@ HWY_INLINE void put(const Octs<L>& octs, Rows& to, std::size_t i) {
     put(octs.high, to, i, 1);
 }
 
+template <class Number>
+HWY_INLINE void calculate_as(const Number& x, const Number& y, Arithmetic& to, std::size_t i) {
+    put(x + y, to.sum, i);
+    put(x - y, to.difference, i);
+    put(x * y, to.product, i);
+    put(x / y, to.quotient, i);
+    put(-x, to.negative, i);
+    put(sqrt(x), to.root, i);
+    put(opaque(x), to.same, i);
+    put(larger(x, y), to.larger, i);
+    put(smaller(x, y), to.smaller, i);
+}
+
 void calculate(const Floats& a, const Floats& b, Arithmetic& to) {
     for (std::size_t i = 0; i < block; i += lane_count) {
         const L x = load(a, i), y = load(b, i);
-        put(x + y, to.sum, i);
-        put(x - y, to.difference, i);
-        put(x * y, to.product, i);
-        put(x / y, to.quotient, i);
-        put(-x, to.negative, i);
+        calculate_as(x, y, to, i);
         L sum = x, product = x;
         sum += y;
         product *= y;
         put(sum, to.added_to, i);
         put(product, to.multiplied_by, i);
-        put(sqrt(x), to.root, i);
-        put(opaque(x), to.same, i);
-        put(larger(x, y), to.larger, i);
-        put(smaller(x, y), to.smaller, i);
+    }
+}
+
+void calculate_pairs(const Floats& a, const Floats& b, Arithmetic& to) {
+    for (std::size_t i = 0; i < block; i += Pair::size) {
+        calculate_as(Pair::load(a.data() + i), Pair::load(b.data() + i), to, i);
     }
 }
 
@@ -83,6 +100,28 @@ void compare(const Floats& a, const Floats& b, Comparisons& to) {
         put(select(less, x, y), to.chosen, i);
         const bool one = any(less);
         for (std::size_t lane = 0; lane < lane_count; ++lane) to.any[i + lane] = one;
+    }
+}
+
+void compare_pairs(const Floats& a, const Floats& b, Comparisons& to) {
+    for (std::size_t i = 0; i < block; i += Pair::size) {
+        const Pair x = Pair::load(a.data() + i), y = Pair::load(b.data() + i);
+        const auto less = x < y, equal = x == y;
+        const auto put_flags = [&](const auto& mask, Flags& flags) HWY_ATTR {
+            const Pair flag = select(mask, Pair(1), Pair(0));
+            for (int lane = 0; lane < Pair::size; ++lane) flags[i + static_cast<std::size_t>(lane)] = flag.at(lane) > 0;
+        };
+        put_flags(less, to.less);
+        put_flags(x > y, to.greater);
+        put_flags(x <= y, to.at_most);
+        put_flags(x >= y, to.at_least);
+        put_flags(equal, to.equal);
+        put_flags((x <= y) & (x >= y), to.both);
+        put_flags(less | equal, to.either);
+        put_flags(!less, to.no);
+        put(select(less, x, y), to.chosen, i);
+        const bool one = any(less);
+        for (std::size_t lane = 0; lane < Pair::size; ++lane) to.any[i + lane] = one;
     }
 }
 
@@ -138,7 +177,16 @@ void gather(const Rows& rows, const QuadRows& quads, const Places& places, Gathe
 }
 
 LaneKernels make_kernels() {
-    return {hwy::TargetName(HWY_TARGET), lane_count, calculate, compare, spread, count, gather};
+    return {hwy::TargetName(HWY_TARGET),
+            lane_count,
+            calculate,
+            compare,
+            spread,
+            count,
+            gather,
+            Pair::size,
+            calculate_pairs,
+            compare_pairs};
 }
 
 }  // namespace

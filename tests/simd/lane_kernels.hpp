@@ -6,7 +6,7 @@
 
 #include "simd/lanes.hpp"
 
-/// The operations of simd/lanes.hpp on arrays, one function for all instruction sets.
+/// The operations of simd/lanes.hpp and lane_pairs.hpp on arrays, one function for all instruction sets.
 namespace talus::test {
 
 /// A multiple of any number of lanes.
@@ -51,6 +51,10 @@ struct LaneKernels {
     void (*spread)(float number, std::int32_t whole, const Floats& numbers, Numbers& to);
     void (*count)(const Floats& a, const Floats& b, WholeNumbers& to);
     void (*gather)(const Rows& rows, const QuadRows& quads, const Places& places, Gathers& to);
+    // Of simd/lane_pairs.hpp, without what it lacks.
+    int lanes_of_pairs;
+    void (*calculate_pairs)(const Floats& a, const Floats& b, Arithmetic& to);
+    void (*compare_pairs)(const Floats& a, const Floats& b, Comparisons& to);
 };
 
 /// Those of the chosen instruction set (simd/dispatch.hpp).

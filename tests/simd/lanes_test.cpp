@@ -11,7 +11,8 @@
 #include "simd/dispatch.hpp"
 #include "simd/lane_kernels.hpp"
 
-/// Every operation of simd/lanes.hpp on every instruction set gives the bits of the same operation on one number.
+/// Every operation of simd/lanes.hpp and lane_pairs.hpp on every instruction set gives the bits of the same operation
+/// on one number.
 namespace talus::test {
 namespace {
 
@@ -89,28 +90,46 @@ TEST_P(Lanes, have_the_width_of_the_registers) {
     EXPECT_EQ(kernels.lanes, set == "AVX3" ? 16 : set == "AVX2" ? 8 : 4);
 }
 
+void expect_sums(const Arithmetic& made, const Floats& a, const Floats& b) {
+    expect_each("+", made.sum, a, b, [](float x, float y) { return x + y; });
+    expect_each("-", made.difference, a, b, [](float x, float y) { return x - y; });
+    expect_each("*", made.product, a, b, [](float x, float y) { return x * y; });
+    expect_each("/", made.quotient, a, b, [](float x, float y) { return x / y; });
+    expect_each("unary -", made.negative, a, b, [](float x, float) { return -x; });
+    expect_each("sqrt", made.root, a, b, [](float x, float) { return std::sqrt(x); });
+    expect_each("opaque", made.same, a, b, [](float x, float) { return x; });
+    // The first of two equal or unordered numbers.
+    expect_each("larger", made.larger, a, b, [](float x, float y) { return std::max(x, y); });
+    expect_each("smaller", made.smaller, a, b, [](float x, float y) { return std::min(x, y); });
+}
+
+void expect_comparisons(const Comparisons& made, const Floats& a, const Floats& b) {
+    expect_flags("<", made.less, a, b, [](float x, float y) { return x < y; });
+    expect_flags(">", made.greater, a, b, [](float x, float y) { return x > y; });
+    expect_flags("<=", made.at_most, a, b, [](float x, float y) { return x <= y; });
+    expect_flags(">=", made.at_least, a, b, [](float x, float y) { return x >= y; });
+    expect_flags("==", made.equal, a, b, [](float x, float y) { return x == y; });
+    expect_flags("&", made.both, a, b, [](float x, float y) { return x == y; });
+    expect_flags("|", made.either, a, b, [](float x, float y) { return x <= y; });
+    expect_flags("!", made.no, a, b, [](float x, float y) { return !(x < y); });
+    expect_each("select", made.chosen, a, b, [](float x, float y) { return x < y ? x : y; });
+}
+
 TEST_P(Lanes, calculate_as_single_numbers_do) {
     with_all_pairs([&](const Floats& a, const Floats& b) {
         Arithmetic made;
         kernels.calculate(a, b, made);
-        expect_each("+", made.sum, a, b, [](float x, float y) { return x + y; });
-        expect_each("-", made.difference, a, b, [](float x, float y) { return x - y; });
-        expect_each("*", made.product, a, b, [](float x, float y) { return x * y; });
-        expect_each("/", made.quotient, a, b, [](float x, float y) { return x / y; });
+        expect_sums(made, a, b);
         expect_each("+=", made.added_to, a, b, [](float x, float y) { return x + y; });
         expect_each("*=", made.multiplied_by, a, b, [](float x, float y) { return x * y; });
-        expect_each("unary -", made.negative, a, b, [](float x, float) { return -x; });
-        expect_each("sqrt", made.root, a, b, [](float x, float) { return std::sqrt(x); });
-        expect_each("opaque", made.same, a, b, [](float x, float) { return x; });
     });
 }
 
-TEST_P(Lanes, take_the_first_of_two_equal_or_unordered_numbers_as_larger_and_as_smaller) {
+TEST_P(Lanes, calculate_in_pairs_of_registers_as_single_numbers_do) {
     with_all_pairs([&](const Floats& a, const Floats& b) {
         Arithmetic made;
-        kernels.calculate(a, b, made);
-        expect_each("larger", made.larger, a, b, [](float x, float y) { return std::max(x, y); });
-        expect_each("smaller", made.smaller, a, b, [](float x, float y) { return std::min(x, y); });
+        kernels.calculate_pairs(a, b, made);
+        expect_sums(made, a, b);
     });
 }
 
@@ -118,32 +137,36 @@ TEST_P(Lanes, compare_as_single_numbers_do) {
     with_all_pairs([&](const Floats& a, const Floats& b) {
         Comparisons made;
         kernels.compare(a, b, made);
-        expect_flags("<", made.less, a, b, [](float x, float y) { return x < y; });
-        expect_flags(">", made.greater, a, b, [](float x, float y) { return x > y; });
-        expect_flags("<=", made.at_most, a, b, [](float x, float y) { return x <= y; });
-        expect_flags(">=", made.at_least, a, b, [](float x, float y) { return x >= y; });
-        expect_flags("==", made.equal, a, b, [](float x, float y) { return x == y; });
+        expect_comparisons(made, a, b);
         expect_flags("!=", made.unequal, a, b, [](float x, float y) { return x != y; });
-        expect_flags("&", made.both, a, b, [](float x, float y) { return x == y; });
-        expect_flags("|", made.either, a, b, [](float x, float y) { return x <= y; });
-        expect_flags("!", made.no, a, b, [](float x, float y) { return !(x < y); });
-        expect_each("select", made.chosen, a, b, [](float x, float y) { return x < y ? x : y; });
+    });
+}
+
+TEST_P(Lanes, compare_in_pairs_of_registers_as_single_numbers_do) {
+    with_all_pairs([&](const Floats& a, const Floats& b) {
+        Comparisons made;
+        kernels.compare_pairs(a, b, made);
+        expect_comparisons(made, a, b);
     });
 }
 
 TEST_P(Lanes, any_sees_a_single_lane) {
-    Comparisons made;
-    kernels.compare(Floats{}, Floats{}, made);
-    EXPECT_EQ(made.any, Flags{});
-    const auto lanes = static_cast<std::size_t>(kernels.lanes);
-    for (std::size_t one = 0; one < block; ++one) {
-        Floats above{};
-        above[one] = Limits::denorm_min();
-        kernels.compare(Floats{}, above, made);
-        for (std::size_t i = 0; i < block; ++i) {
-            EXPECT_EQ(made.any[i], i / lanes == one / lanes) << "lane " << one << " is set, register of lane " << i;
+    const auto expect_one = [](const auto& compare, int lanes_of_any) {
+        const auto lanes = static_cast<std::size_t>(lanes_of_any);
+        Comparisons made;
+        compare(Floats{}, Floats{}, made);
+        EXPECT_EQ(made.any, Flags{});
+        for (std::size_t one = 0; one < block; ++one) {
+            Floats above{};
+            above[one] = Limits::denorm_min();
+            compare(Floats{}, above, made);
+            for (std::size_t i = 0; i < block; ++i) {
+                EXPECT_EQ(made.any[i], i / lanes == one / lanes) << "lane " << one << " is set, register of lane " << i;
+            }
         }
-    }
+    };
+    expect_one(kernels.compare, kernels.lanes);
+    expect_one(kernels.compare_pairs, kernels.lanes_of_pairs);
 }
 
 TEST_P(Lanes, are_filled_with_one_number_or_one_by_one) {
