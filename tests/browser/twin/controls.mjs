@@ -4,7 +4,7 @@ import { assert, clickGround, drag, inControl, pause, shownTime, until, viewClip
 /** The page as people see it: with all particles of the scene and the whole mesh of the ground. */
 async function testOpening(run) {
   const server = await run.start([], { particles: null });
-  const page = await run.open(server.controller, { name: "Ada", finest: true });
+  const page = await run.open(server.controller, { name: "Ada", finest: true, sharp: true });
   await run.check("opens: title, terrain on the canvas, token gone from the address", async () => {
     console.log(`        first picture after ${page.firstPicture_ms} ms`);
     assert.ok(!page.url().includes("token"), page.url());
