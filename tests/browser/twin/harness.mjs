@@ -166,12 +166,18 @@ export class Run {
     this.last = page;
     return page;
   }
-  /** Colours in a part of the page, read from pixels on the screen: how many, shares of the commonest, of clear red and of clear blue. */
-  async colours(page, clip) {
+  /** A part of the page, once what was asked for before is drawn. */
+  async picture(page, clip) {
     await within(page.evaluate(drawn), "two pictures");
     const png = await page.screenshot(clip ? { clip } : {});
-    const found = await page.evaluate(readPixels, png.toString("base64"));
-    return { ...found, png, hash: createHash("sha1").update(png).digest("hex") };
+    return { png, hash: createHash("sha1").update(png).digest("hex") };
+  }
+  /** The same with its colours, read from pixels on the screen: how many, shares of the commonest, of clear red and of clear blue. */
+  async colours(page, clip) {
+    return this.counted(page, await this.picture(page, clip));
+  }
+  async counted(page, seen) {
+    return { ...seen, ...(await page.evaluate(readPixels, seen.png.toString("base64"))) };
   }
   /** Share of a part of the page that is clearly more red than green and blue. */
   async reddish(page, clip) {
@@ -187,25 +193,25 @@ export class Run {
     let last = null;
     const { seen } = await until(async () => {
       const before = await at();
-      const seen = await this.colours(page, clip);
+      const seen = await this.picture(page, clip);
       const after = await at();
       const quiet = before.begun === before.ended && after.begun === before.begun && before.pixelRatio === before.sharpest && after.frames === before.frames;
       const same = quiet && last !== null && (last.hash === seen.hash || await page.evaluate(largestDifference, [last.png.toString("base64"), seen.png.toString("base64")]) <= sameShade);
       last = quiet ? seen : null;
       return { seen: same ? seen : null, quiet, before, after };
     }, ({ seen }) => seen !== null, "a view at rest");
-    return seen;
+    return this.counted(page, seen);
   }
   /** The same once it is another picture than `others`, hashes of earlier ones. */
   async changed(page, clip, others, what) {
-    await until(async () => (await this.colours(page, clip)).hash, (hash) => !others.includes(hash), what);
+    await until(async () => (await this.picture(page, clip)).hash, (hash) => !others.includes(hash), what);
     return this.still(page, clip);
   }
   /** The same once it is `one` again. */
   async back(page, clip, one, what) {
     let seen;
     await until(async () => {
-      seen = await this.colours(page, clip);
+      seen = await this.picture(page, clip);
       return seen.hash === one.hash ? 0 : page.evaluate(largestDifference, [one.png.toString("base64"), seen.png.toString("base64")]);
     }, (difference) => difference <= sameShade, what).catch((error) => {
       writeFileSync(join(this.output, "expected.png"), one.png);
