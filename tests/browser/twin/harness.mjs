@@ -6,6 +6,7 @@ import { existsSync, mkdirSync, readFileSync, writeFileSync } from "node:fs";
 import { join } from "node:path";
 import { createInterface } from "node:readline";
 import { inflateRawSync } from "node:zlib";
+import { contextOf } from "../chromium.mjs";
 
 /// Without the variables of this test, which the program does not know and refuses.
 export const programEnvironment = Object.fromEntries(Object.entries(process.env).filter(([name]) => !/^TALUS_(?!DATA$|SIMD$)/.test(name)));
@@ -82,6 +83,9 @@ export async function serveFrom(page, folder) {
   });
 }
 
+/** A mesh of the ground that is drawn in a fraction of the time. pages: one, or a context. */
+export const coarseGround = (pages) => pages.route(/\/api\/terrain/, (route) => route.continue({ url: route.request().url().replace(/max_cells=\d+/, "max_cells=8000") }));
+
 export class Run {
   passed = 0;
   failed = 0;
@@ -121,19 +125,12 @@ export class Run {
       await this.last?.screenshot({ path: join(this.output, `failed-${this.failed}.png`), timeout: 30_000 }).catch(() => {});
     }
   }
-  /** Without a graphics card pictures take all of the processor that they get: ten a second show as much to a test as sixty. */
-  async context(options) {
-    const context = await this.browser.newContext(options);
-    await context.addInitScript((least_ms) => {
-      const ask = window.requestAnimationFrame.bind(window);
-      window.requestAnimationFrame = (draw) => setTimeout(() => ask(draw), least_ms);
-    }, 100);
-    return context;
+  context(options, sharp) {
+    return contextOf(this.browser, options, sharp);
   }
   /** finest: with the whole mesh of the ground; a coarser one is drawn in a fraction of the time. look: natural ones take far longer to draw without a graphics card. edits: how runs that have begun are edited; null: not chosen yet. touch: as on a phone. late: which texts of the server come late, as from a busy one. sharp: the view has as many pixels as the page around it, for checks of what people see; otherwise half as many a side, drawn in a third of the time. scale: pixels of the screen per pixel of the page; with fewer than one, text moves by whole pixels between two pictures of one view. opening: with the first view of the scene; otherwise the whole ground is shown, where places are at the same shares of the view whatever the scene holds. prepare: called with the page before it loads. TALUS_SITE=FOLDER: with another build of the page than the program's. */
   async open(link, { width = 1280, height = 720, reduced = true, name, finest = false, edits = "now", look = "scientific", touch = false, late, sharp = false, scale = 1, opening = false, prepare } = {}) {
-    const context = await this.context({ viewport: { width, height }, deviceScaleFactor: scale, reducedMotion: reduced ? "reduce" : "no-preference", acceptDownloads: true, hasTouch: touch, isMobile: touch });
-    if (!sharp) await context.addInitScript(() => Object.defineProperty(window, "devicePixelRatio", { value: 0.5, writable: true }));
+    const context = await this.context({ viewport: { width, height }, deviceScaleFactor: scale, reducedMotion: reduced ? "reduce" : "no-preference", acceptDownloads: true, hasTouch: touch, isMobile: touch }, sharp);
     const page = await context.newPage();
     if (name) await page.addInitScript((n) => localStorage.setItem("talus-name", n), name);
     await page.addInitScript((l) => localStorage.getItem("talus-look") ?? localStorage.setItem("talus-look", l), look);
@@ -148,7 +145,7 @@ export class Run {
       if (!/^(data|blob):/.test(request.url())) this.requests.push(request.url());
     });
     page.setDefaultTimeout(limit_ms);
-    if (!finest) await page.route(/\/api\/terrain/, (route) => route.continue({ url: route.request().url().replace(/max_cells=\d+/, "max_cells=8000") }));
+    if (!finest) await coarseGround(page);
     if (late) {
       await page.routeWebSocket(/\/ws/, (toPage) => {
         const toServer = toPage.connectToServer();
