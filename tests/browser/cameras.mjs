@@ -60,7 +60,7 @@ try {
   const wanted = Object.entries(views).filter(([name]) => only.length === 0 || only.includes(name));
   const rows = Object.fromEntries(wanted.map(([name]) => [name, []]));
   for (const [width, height] of sizes) {
-    const page = await run.open(server.viewer, { width, height, look: "natural", opening: true, touch: width < 720, finest: process.env.TALUS_FINEST !== undefined,
+    const page = await run.open(server.viewer, { width, height, look: "natural", sharp: true, opening: true, touch: width < 720, finest: process.env.TALUS_FINEST !== undefined,
       prepare: (page) => page.addInitScript(([key, all]) => localStorage.setItem(key, JSON.stringify(all)), [`talus-views${about.title}`, saved]) });
     for (const [name, view] of wanted) {
       const row = [];

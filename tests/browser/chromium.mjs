@@ -19,6 +19,20 @@ export async function findChromium(test) {
   return (args) => driver.chromium.launch({ executablePath, args: [...quiet, ...args] });
 }
 
+/**
+ * Without a graphics card pictures take all of the processor that they get. Ten a second show as much to a test as sixty, and views (not the page
+ * around them, whose text stays where it is) have half as many pixels a side unless they are `sharp`.
+ */
+export async function contextOf(browser, options, sharp = false) {
+  const context = await browser.newContext(options);
+  await context.addInitScript((least_ms) => {
+    const ask = window.requestAnimationFrame.bind(window);
+    window.requestAnimationFrame = (draw) => setTimeout(() => ask(draw), least_ms);
+  }, 100);
+  if (!sharp) await context.addInitScript(() => Object.defineProperty(window, "devicePixelRatio", { value: 0.5, writable: true }));
+  return context;
+}
+
 export class Score {
   passed = 0;
   failed = 0;

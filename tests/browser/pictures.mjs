@@ -69,7 +69,7 @@ const pictures = {
     const [target, low] = [at(215), at(345)];
     const [x, y] = [low[0] - target[0], low[1] - target[1]].map((v) => v / Math.hypot(low[0] - target[0], low[1] - target[1]));
     const position = [target[0] + 215 * x - 60 * y, target[1] + 215 * y + 60 * x, target[2] + 105];
-    const page = await run.open(server.controller, { name: "Ada", width: 1440, height: 900, finest: true, look: "natural",
+    const page = await run.open(server.controller, { name: "Ada", width: 1440, height: 900, finest: true, sharp: true, look: "natural",
       prepare: (page) => page.addInitScript(([key, views]) => localStorage.setItem(key, JSON.stringify(views)), [`talus-views${title}`, [{ position, target }]]) });
     await inControl(page);
     await page.selectOption("[aria-label='Saved views']", "1");
@@ -82,7 +82,7 @@ const pictures = {
     await post(server, "scenarios", { copy_of: "A" });
     await post(server, "scenarios/B/actions", { action: "set_parameter", key: "material.friction_coefficient", value: 0.3 });
     await compute(server, ["A", "B"], 45);
-    const page = await run.open(server.controller, { name: "Ada", width: 1440, height: 900, finest: true });
+    const page = await run.open(server.controller, { name: "Ada", width: 1440, height: 900, finest: true, sharp: true });
     await inControl(page);
     await until(() => page.locator(".pane").count(), (n) => n === 2, "two views");
     await page.selectOption("select[aria-label^='Map layer']", "peak_depth");

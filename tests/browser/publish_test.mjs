@@ -4,7 +4,7 @@ import { spawnSync } from "node:child_process";
 import { existsSync, mkdirSync, readFileSync, rmSync, statSync, writeFileSync } from "node:fs";
 import { join, resolve } from "node:path";
 import { fileURLToPath, pathToFileURL } from "node:url";
-import { end, findChromium, Score, serve, serveFolder, softwareWebGL } from "./chromium.mjs";
+import { contextOf, end, findChromium, Score, serve, serveFolder, softwareWebGL } from "./chromium.mjs";
 import { clickGround, startServer, until } from "./twin/harness.mjs";
 
 const [, , folder, talus] = process.argv;
@@ -30,7 +30,7 @@ const browser = await launch(softwareWebGL);
 
 /** Opens a twin; `asked`: addresses that it asked for, `problems`: what the console said. */
 async function open(address, viewport, settings = {}) {
-  const context = await browser.newContext({ viewport, acceptDownloads: true, reducedMotion: "reduce", ...settings });
+  const context = await contextOf(browser, { viewport, acceptDownloads: true, reducedMotion: "reduce", ...settings });
   const page = await context.newPage();
   const asked = [];
   const problems = [];

@@ -4,7 +4,7 @@ import { assert, clickGround, drag, inControl, pause, shownTime, until, viewClip
 /** The page as people see it: with all particles of the scene and the whole mesh of the ground. */
 async function testOpening(run) {
   const server = await run.start([], { particles: null });
-  const page = await run.open(server.controller, { name: "Ada", finest: true });
+  const page = await run.open(server.controller, { name: "Ada", finest: true, sharp: true });
   await run.check("opens: title, terrain on the canvas, token gone from the address", async () => {
     console.log(`        first picture after ${page.firstPicture_ms} ms`);
     assert.ok(!page.url().includes("token"), page.url());
@@ -52,7 +52,7 @@ export async function testControls(run) {
     await page.click(".run");
     await until(state, (s) => s.status === "running" && s.time_s > 1, "running");
     await until(() => shownTime(page), (t) => t > 1, "time on the page");
-    await until(async () => (await run.colours(page, clip)).hash, (hash) => hash !== before.hash, "another picture");
+    await until(async () => (await run.picture(page, clip)).hash, (hash) => hash !== before.hash, "another picture");
     const left = () => page.textContent(".timeline-ends");
     const end = (await state()).end_time_s;
     await until(left, (t) => new RegExp(`\\d+\\s(s|min|h) left · ${end} s$`).test(t), "the wall time left");
@@ -248,7 +248,7 @@ export async function testControls(run) {
     const barrier = (await until(setup, (s) => s.barriers.length === 1, "a barrier")).barriers[0];
     assert.equal(barrier.line.length, 3);
     assert.equal(barrier.height_m, 4);
-    await until(async () => (await run.colours(page, clip)).hash, (hash) => hash !== without.hash, "the barrier in the view");
+    await until(async () => (await run.picture(page, clip)).hash, (hash) => hash !== without.hash, "the barrier in the view");
     const field = page.locator(".editor input[type=number]").first();
     await field.fill("6");
     await field.press("Enter");

@@ -30,7 +30,7 @@ export async function testGround(run) {
   /** A picture once what was asked for is drawn, without notices of what was done. */
   const shot = async (name) => {
     await page.evaluate(() => document.querySelectorAll(".toast.done").forEach((toast) => toast.remove()));
-    await run.colours(page);
+    await run.picture(page);
     await run.shot(page, name);
   };
 
@@ -77,7 +77,7 @@ export async function testGround(run) {
     await handle.focus();
     await page.keyboard.press("ArrowUp");
     await until(setup, (s) => Math.abs(s.zones[0].polygons[0][0][0][1] - ring[0][1] - 1) < 0.02, "a corner north by 1 m");
-    await until(async () => (await run.colours(page, clip)).hash, (hash) => hash !== without.hash, "the zone in the view");
+    await until(async () => (await run.picture(page, clip)).hash, (hash) => hash !== without.hash, "the zone in the view");
     await page.locator(".editor:visible summary").click();
     assert.equal(await editor.locator(".corners input").count(), 8);
   });

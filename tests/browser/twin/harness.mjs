@@ -6,6 +6,7 @@ import { existsSync, mkdirSync, readFileSync, writeFileSync } from "node:fs";
 import { join } from "node:path";
 import { createInterface } from "node:readline";
 import { inflateRawSync } from "node:zlib";
+import { contextOf } from "../chromium.mjs";
 
 /// Without the variables of this test, which the program does not know and refuses.
 export const programEnvironment = Object.fromEntries(Object.entries(process.env).filter(([name]) => !/^TALUS_(?!DATA$|SIMD$)/.test(name)));
@@ -82,6 +83,9 @@ export async function serveFrom(page, folder) {
   });
 }
 
+/** A mesh of the ground that is drawn in a fraction of the time. pages: one, or a context. */
+export const coarseGround = (pages) => pages.route(/\/api\/terrain/, (route) => route.continue({ url: route.request().url().replace(/max_cells=\d+/, "max_cells=8000") }));
+
 export class Run {
   passed = 0;
   failed = 0;
@@ -121,18 +125,12 @@ export class Run {
       await this.last?.screenshot({ path: join(this.output, `failed-${this.failed}.png`), timeout: 30_000 }).catch(() => {});
     }
   }
-  /** Without a graphics card pictures take all of the processor that they get: ten a second show as much to a test as sixty. */
-  async context(options) {
-    const context = await this.browser.newContext(options);
-    await context.addInitScript((least_ms) => {
-      const ask = window.requestAnimationFrame.bind(window);
-      window.requestAnimationFrame = (draw) => setTimeout(() => ask(draw), least_ms);
-    }, 100);
-    return context;
+  context(options, sharp) {
+    return contextOf(this.browser, options, sharp);
   }
-  /** finest: with the whole mesh of the ground; a coarser one is drawn in a fraction of the time. look: natural ones take far longer to draw without a graphics card. edits: how runs that have begun are edited; null: not chosen yet. touch: as on a phone. late: which texts of the server come late, as from a busy one. scale: pixels of the screen per pixel of the page; with fewer than one, text moves by whole pixels between two pictures of one view. opening: with the first view of the scene; otherwise the whole ground is shown, where places are at the same shares of the view whatever the scene holds. prepare: called with the page before it loads. TALUS_SITE=FOLDER: with another build of the page than the program's. */
-  async open(link, { width = 1280, height = 720, reduced = true, name, finest = false, edits = "now", look = "scientific", touch = false, late, scale = 1, opening = false, prepare } = {}) {
-    const context = await this.context({ viewport: { width, height }, deviceScaleFactor: scale, reducedMotion: reduced ? "reduce" : "no-preference", acceptDownloads: true, hasTouch: touch, isMobile: touch });
+  /** finest: with the whole mesh of the ground; a coarser one is drawn in a fraction of the time. look: natural ones take far longer to draw without a graphics card. edits: how runs that have begun are edited; null: not chosen yet. touch: as on a phone. late: which texts of the server come late, as from a busy one. sharp: the view has as many pixels as the page around it, for checks of what people see; otherwise half as many a side, drawn in a third of the time. scale: pixels of the screen per pixel of the page; with fewer than one, text moves by whole pixels between two pictures of one view. opening: with the first view of the scene; otherwise the whole ground is shown, where places are at the same shares of the view whatever the scene holds. prepare: called with the page before it loads. TALUS_SITE=FOLDER: with another build of the page than the program's. */
+  async open(link, { width = 1280, height = 720, reduced = true, name, finest = false, edits = "now", look = "scientific", touch = false, late, sharp = false, scale = 1, opening = false, prepare } = {}) {
+    const context = await this.context({ viewport: { width, height }, deviceScaleFactor: scale, reducedMotion: reduced ? "reduce" : "no-preference", acceptDownloads: true, hasTouch: touch, isMobile: touch }, sharp);
     const page = await context.newPage();
     if (name) await page.addInitScript((n) => localStorage.setItem("talus-name", n), name);
     await page.addInitScript((l) => localStorage.getItem("talus-look") ?? localStorage.setItem("talus-look", l), look);
@@ -147,7 +145,7 @@ export class Run {
       if (!/^(data|blob):/.test(request.url())) this.requests.push(request.url());
     });
     page.setDefaultTimeout(limit_ms);
-    if (!finest) await page.route(/\/api\/terrain/, (route) => route.continue({ url: route.request().url().replace(/max_cells=\d+/, "max_cells=8000") }));
+    if (!finest) await coarseGround(page);
     if (late) {
       await page.routeWebSocket(/\/ws/, (toPage) => {
         const toServer = toPage.connectToServer();
@@ -165,12 +163,18 @@ export class Run {
     this.last = page;
     return page;
   }
-  /** Colours in a part of the page, read from pixels on the screen: how many, shares of the commonest, of clear red and of clear blue. */
-  async colours(page, clip) {
+  /** A part of the page, once what was asked for before is drawn. */
+  async picture(page, clip) {
     await within(page.evaluate(drawn), "two pictures");
     const png = await page.screenshot(clip ? { clip } : {});
-    const found = await page.evaluate(readPixels, png.toString("base64"));
-    return { ...found, png, hash: createHash("sha1").update(png).digest("hex") };
+    return { png, hash: createHash("sha1").update(png).digest("hex") };
+  }
+  /** The same with its colours, read from pixels on the screen: how many, shares of the commonest, of clear red and of clear blue. */
+  async colours(page, clip) {
+    return this.counted(page, await this.picture(page, clip));
+  }
+  async counted(page, seen) {
+    return { ...seen, ...(await page.evaluate(readPixels, seen.png.toString("base64"))) };
   }
   /** Share of a part of the page that is clearly more red than green and blue. */
   async reddish(page, clip) {
@@ -186,25 +190,25 @@ export class Run {
     let last = null;
     const { seen } = await until(async () => {
       const before = await at();
-      const seen = await this.colours(page, clip);
+      const seen = await this.picture(page, clip);
       const after = await at();
       const quiet = before.begun === before.ended && after.begun === before.begun && before.pixelRatio === before.sharpest && after.frames === before.frames;
       const same = quiet && last !== null && (last.hash === seen.hash || await page.evaluate(largestDifference, [last.png.toString("base64"), seen.png.toString("base64")]) <= sameShade);
       last = quiet ? seen : null;
       return { seen: same ? seen : null, quiet, before, after };
     }, ({ seen }) => seen !== null, "a view at rest");
-    return seen;
+    return this.counted(page, seen);
   }
   /** The same once it is another picture than `others`, hashes of earlier ones. */
   async changed(page, clip, others, what) {
-    await until(async () => (await this.colours(page, clip)).hash, (hash) => !others.includes(hash), what);
+    await until(async () => (await this.picture(page, clip)).hash, (hash) => !others.includes(hash), what);
     return this.still(page, clip);
   }
   /** The same once it is `one` again. */
   async back(page, clip, one, what) {
     let seen;
     await until(async () => {
-      seen = await this.colours(page, clip);
+      seen = await this.picture(page, clip);
       return seen.hash === one.hash ? 0 : page.evaluate(largestDifference, [one.png.toString("base64"), seen.png.toString("base64")]);
     }, (difference) => difference <= sameShade, what).catch((error) => {
       writeFileSync(join(this.output, "expected.png"), one.png);

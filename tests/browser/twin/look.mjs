@@ -166,6 +166,7 @@ export async function testLook(run) {
 
   await run.check("a briefing is a film that plays: as long as the flow at its speed, with its captions", async () => {
     await page.keyboard.press("n"); // far sooner drawn
+    await page.evaluate(() => (window.devicePixelRatio = 1)); // a film has the pixels of the view
     await page.click("[aria-label='Fly-through video']");
     await page.selectOption("[aria-label='Speed of the video']", "10");
     await page.locator("label:has-text('whole scene') input").uncheck();

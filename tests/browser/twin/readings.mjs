@@ -243,7 +243,7 @@ export async function testReadings(run) {
       assert.deepEqual(await names(), [...up].reverse());
       const before = await run.still(page, clip);
       await page.locator(".impacts").last().locator("tbody th button").first().click();
-      await until(async () => (await run.colours(page, clip)).hash, (hash) => hash !== before.hash, "the view moves");
+      await until(async () => (await run.picture(page, clip)).hash, (hash) => hash !== before.hash, "the view moves");
       await page.selectOption("select[aria-label='Colour of houses']", "pressure");
       await run.shot(page, "11-impact");
       await page.click("[aria-label='Fit']");
@@ -297,7 +297,7 @@ export async function testReadings(run) {
     const end = (await state()).end_time_s;
     await page.mouse.click(box.x + 7 + (box.width - 14) * (0.3 * last / end), box.y + box.height / 2);
     await until(() => shownTime(page), (t) => Math.abs(t - 0.3 * last) < 0.1 * last + 0.3, "an earlier time");
-    await until(async () => (await run.colours(page, clip)).hash, (hash) => hash !== now.hash, "another view than that of now");
+    await until(async () => (await run.picture(page, clip)).hash, (hash) => hash !== now.hash, "another view than that of now");
     assert.match(await page.textContent(".status"), /Playback/);
     const from = await shownTime(page);
     await slider.focus();

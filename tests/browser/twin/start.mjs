@@ -2,7 +2,7 @@
 import { existsSync, mkdtempSync, rmSync } from "node:fs";
 import { tmpdir } from "node:os";
 import { join } from "node:path";
-import { assert, limit_ms, serveFrom, shows, startServer, until } from "./harness.mjs";
+import { assert, coarseGround, limit_ms, serveFrom, shows, startServer, until } from "./harness.mjs";
 
 /** An elevation model as an ASCII grid, which states no reference system: a slope of 60 x 50 cells of 5 m that falls to the west. */
 function asciiGrid() {
@@ -27,6 +27,9 @@ export async function testStart(run) {
   run.servers.push(server);
   const context = await run.context({ viewport: { width: 1440, height: 900 } });
   const page = await context.newPage();
+  // For the scenes that are opened, as in other tests.
+  await coarseGround(page);
+  await page.addInitScript(() => localStorage.getItem("talus-look") ?? localStorage.setItem("talus-look", "scientific"));
   context.setDefaultTimeout(limit_ms);
   run.last = page;
   page.on("pageerror", (error) => run.problems.push(error.stack ?? String(error)));

@@ -100,7 +100,7 @@ export async function testVisible(run) {
   const last_s = (await state()).time_s;
 
   for (const [name, width, height, most] of [["a desk", 1440, 900, 0.0025], ["a projector", 1024, 768, 0.0025], ["a phone", 390, 844, 0.004]]) {
-    const page = await run.open(server.viewer, { width, height, look: "natural", opening: true, touch: width < 720 });
+    const page = await run.open(server.viewer, { width, height, look: "natural", sharp: true, opening: true, touch: width < 720 });
     await run.check(`on ${name} debris stands out from the ground in the first view, on its way and at rest, and is brown`, async () => {
       await clear(page);
       const box = await boxOf(page.locator(".stage canvas"));

@@ -8,6 +8,7 @@ import type { Grid } from "../protocol/grid";
 import { rampAt, roundStep, table, type Rgb } from "./colour";
 import type { Relief } from "./relief";
 import { groundFragment, groundNormal, groundVertex, sharedHead } from "./ground_shader";
+import { forLook } from "./natural/daylight";
 import { naturalGround } from "./natural/ground_natural";
 
 export function rampTexture(at: (share: number) => Rgb): DataTexture {
@@ -168,7 +169,7 @@ export class Ground {
       uPhotoGain: { value: 1 },
       uSea: { value: onEarth ? 1 : 0 },
     };
-    const material = new MeshLambertMaterial();
+    const material = forLook(new MeshLambertMaterial(), further["uNatural"]);
     material.onBeforeCompile = (shader) => {
       Object.assign(shader.uniforms, this.uniforms);
       shader.vertexShader = shader.vertexShader

@@ -19,7 +19,7 @@ const vertexHead = /* glsl */ `
   attribute float shade;
   uniform sampler2D uSunk;
   uniform vec4 uSunkPlacing;
-  uniform float uCell, uNatural;
+  uniform float uCell;
   varying float vShade;
   varying vec3 vLocal;
   varying vec3 vGroundNormal;
@@ -44,7 +44,10 @@ const vertexPlace = /* glsl */ `
   vShade = shade;
   vLocal = transformed;
   vGroundNormal = objectNormal;
-  if (uSurface > 0.5 || uNatural > 0.5) transformed.z += flowAt(position.xy).x * step(0.0, shade);
+  #ifndef NATURAL
+  if (uSurface > 0.5)
+  #endif
+  transformed.z += flowAt(position.xy).x * step(0.0, shade);
 `;
 
 export const groundVertex = { head: vertexHead, normal: vertexNormal, place: vertexPlace };
@@ -71,10 +74,10 @@ const head = /* glsl */ `
   float flowCover = 0.0;
 `;
 
+// Of the natural look: natural/ground_natural.ts.
 const colour = /* glsl */ `
-  if (uNatural > 0.5) {
-    // See natural/ground_natural.ts.
-  } else if (vShade < 0.0) {
+  #ifndef NATURAL
+  if (vShade < 0.0) {
     // Side walls: faint layers, darker towards the floor.
     float down = clamp((vLocal.z - uElevation.x) / uElevation.y, -0.3, 1.0);
     diffuseColor.rgb = mix(vec3(0.36, 0.34, 0.32), vec3(0.50, 0.475, 0.44), down + 0.3) * 0.9;
@@ -117,13 +120,15 @@ const colour = /* glsl */ `
     }
     diffuseColor.rgb = ground;
   }
+  #endif
 `;
 
 export const groundFragment = { head, colour };
 
 // Where debris lies as a surface, its own slope is shaded; `normal` is in view space.
 export const groundNormal = /* glsl */ `
-  if (uNatural < 0.5 && uSurface > 0.5 && vShade >= 0.0) {
+  #ifndef NATURAL
+  if (uSurface > 0.5 && vShade >= 0.0) {
     float e = 0.7;
     vec2 slope = vec2(flowAt(vLocal.xy + vec2(e, 0.0)).x - flowAt(vLocal.xy - vec2(e, 0.0)).x,
                       flowAt(vLocal.xy + vec2(0.0, e)).x - flowAt(vLocal.xy - vec2(0.0, e)).x) / (2.0 * e);
@@ -131,4 +136,5 @@ export const groundNormal = /* glsl */ `
     vec3 lifted = normalize(vec3(ground.xy / max(ground.z, 0.05) - slope, 1.0));
     normal = normalize((viewMatrix * vec4(mix(ground, lifted, flowCover), 0.0)).xyz);
   }
+  #endif
 `;

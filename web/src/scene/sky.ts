@@ -1,6 +1,6 @@
 // Sky, sun and their light.
 import { BackSide, DirectionalLight, HemisphereLight, Mesh, ShaderMaterial, SphereGeometry, Vector3, type Box3, type Scene } from "three";
-import { airHead, type Daylight } from "./natural/daylight";
+import { airHead, forLook, type Daylight } from "./natural/daylight";
 
 /** Towards the sun of the scientific look: from the north-west, as maps are lit, so that relief is not perceived inverted. */
 const mapSun = new Vector3(-0.62, 0.5, 0.72).normalize();
@@ -23,22 +23,22 @@ const fragment = /* glsl */ `
   uniform vec3 uMapSun;
   void main() {
     vec3 d = normalize(vDirection);
-    if (uNatural > 0.5) {
-      vec3 sky = skyTowards(vec3(d.xy, max(d.z, 0.0)));
-      // Clouds, thin towards the horizon; none below it, where the ground ends in haze.
-      vec2 at = d.xy / (d.z + 0.12);
-      float cloud = texture2D(uNoise, at / 5.0).b * 0.6 + texture2D(uNoise, at.yx / 2.1 + 0.3).b * 0.4;
-      float share = smoothstep(0.50, 0.72, cloud) * smoothstep(0.02, 0.22, d.z);
-      sky = mix(sky, uHorizon * 1.15 + 0.3 * uGlow, 0.75 * share);
-      sky += uGlow * 60.0 * smoothstep(0.99985, 0.99995, dot(d, uSunWorld)) * (1.0 - share) * step(0.0, d.z);
-      gl_FragColor = vec4(developed(sky), 1.0);
-      #include <colorspace_fragment>
-      return;
-    }
+    #ifdef NATURAL
+    vec3 sky = skyTowards(vec3(d.xy, max(d.z, 0.0)));
+    // Clouds, thin towards the horizon; none below it, where the ground ends in haze.
+    vec2 at = d.xy / (d.z + 0.12);
+    float cloud = texture2D(uNoise, at / 5.0).b * 0.6 + texture2D(uNoise, at.yx / 2.1 + 0.3).b * 0.4;
+    float share = smoothstep(0.50, 0.72, cloud) * smoothstep(0.02, 0.22, d.z);
+    sky = mix(sky, uHorizon * 1.15 + 0.3 * uGlow, 0.75 * share);
+    sky += uGlow * 60.0 * smoothstep(0.99985, 0.99995, dot(d, uSunWorld)) * (1.0 - share) * step(0.0, d.z);
+    gl_FragColor = vec4(developed(sky), 1.0);
+    #include <colorspace_fragment>
+    #else
     vec3 horizon = vec3(0.925, 0.938, 0.945), zenith = vec3(0.545, 0.682, 0.788), below = vec3(0.815, 0.835, 0.842);
     vec3 colour = d.z > 0.0 ? mix(horizon, zenith, pow(d.z, 0.6)) : mix(horizon, below, pow(-d.z, 0.5));
     colour += vec3(0.10, 0.08, 0.04) * pow(max(dot(d, uMapSun), 0.0), 6.0);
     gl_FragColor = vec4(colour, 1.0);
+    #endif
   }
 `;
 
@@ -55,8 +55,8 @@ export class Sky {
   constructor(scene: Scene, private readonly daylight: Daylight) {
     this.dome = new Mesh(
       new SphereGeometry(1, 32, 24),
-      new ShaderMaterial({ vertexShader: vertex, fragmentShader: fragment, side: BackSide, depthWrite: false,
-        uniforms: { ...daylight.uniforms, uMapSun: { value: mapSun } } }),
+      forLook(new ShaderMaterial({ vertexShader: vertex, fragmentShader: fragment, side: BackSide, depthWrite: false,
+        uniforms: { ...daylight.uniforms, uMapSun: { value: mapSun } } }), daylight.uniforms.uNatural),
     );
     this.dome.frustumCulled = false;
     this.dome.renderOrder = -10;

@@ -1,12 +1,12 @@
 // Light, air and exposure of the natural look, for all views of the page.
-import { Vector3, type Color, type IUniform } from "three";
+import { Vector3, type Color, type IUniform, type Material } from "three";
 import type { Relief } from "../relief";
 import { lightAt, sunAt, usualMoment, type Light, type Moment } from "./sun";
 import { noiseTexture } from "./noise";
 
 /** Shared by all shaders of the natural look. What they compute is the brightness of a scene, of any range. */
 export const airHead = /* glsl */ `
-  uniform float uNatural, uExposure, uAirDensity, uDetail;
+  uniform float uExposure, uAirDensity, uDetail;
   uniform vec3 uSunWorld, uSunLight, uSkyLight, uHorizon, uZenith, uGlow;
   uniform sampler2D uNoise;
   vec3 skyTowards(vec3 d) {
@@ -27,6 +27,22 @@ export const airHead = /* glsl */ `
     return clamp((c * (2.51 * c + 0.03)) / (c * (2.43 * c + 0.59) + 0.14), 0.0, 1.0);
   }
 `;
+
+/**
+ * Compiles the shader of a material for the look that is shown, with NATURAL for the natural one. A branch for the other would be computed and
+ * thrown away where a processor takes the place of a graphics card. Both stay compiled once they were shown.
+ */
+export function forLook<M extends Material & { defines?: Record<string, unknown> }>(material: M, natural: IUniform<number>): M {
+  material.onBeforeRender = () => {
+    const shown = natural.value > 0;
+    if ((material.defines?.["NATURAL"] !== undefined) === shown) return;
+    material.defines = { ...material.defines };
+    if (shown) material.defines["NATURAL"] = "";
+    else delete material.defines["NATURAL"];
+    material.needsUpdate = true;
+  };
+  return material;
+}
 
 /** Mean brightness of ground in a picture before the curve: middle grey behind it. */
 const wanted = 0.21;

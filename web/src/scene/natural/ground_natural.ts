@@ -3,6 +3,7 @@
 import { airHead } from "./daylight";
 
 const head = /* glsl */ `
+  #ifdef NATURAL
   ${airHead}
   uniform sampler2D uTrail, uShade;
   uniform vec4 uTrailPlacing, uShadePlacing;
@@ -135,11 +136,13 @@ const head = /* glsl */ `
     s.mud = max(s.mud, share * (1.0 - margin));
     return share;
   }
+  #endif
 `;
 
 /** Before the lights: what the ground is made of here. */
 const colour = /* glsl */ `
-  if (uNatural > 0.5) {
+  #ifdef NATURAL
+  {
     vec3 n = normalize(vGroundNormal);
     if (vShade < 0.0) {
       float bed = texture2D(uNoise, vec2(vLocal.x + vLocal.y, 3.0 * vLocal.z) / 60.0).z;
@@ -160,18 +163,22 @@ const colour = /* glsl */ `
     }
     diffuseColor.rgb = natural.albedo;
   }
+  #endif
 `;
 
 const normal = /* glsl */ `
-  if (uNatural > 0.5 && vShade >= 0.0) {
+  #ifdef NATURAL
+  if (vShade >= 0.0) {
     vec3 ground = normalize(vGroundNormal);
     normal = normalize((viewMatrix * vec4(normalize(vec3(ground.xy / max(ground.z, 0.05) - natural.slope, 1.0)), 0.0)).xyz);
   }
+  #endif
 `;
 
 /** After the lights: shade of the hills, open sky, gloss of what is wet, air. */
 const light = /* glsl */ `
-  if (uNatural > 0.5) {
+  #ifdef NATURAL
+  {
     vec2 shadeAt = (vLocal.xy - uShadePlacing.xy) * uShadePlacing.zw;
     float sunny = uShadePlacing.z > 0.0 ? texture2D(uShade, shadeAt).r : 1.0;
     vec3 worldNormal = normalize((vec4(normal, 0.0) * viewMatrix).xyz);
@@ -193,6 +200,7 @@ const light = /* glsl */ `
     }
     outgoingLight = developed(throughAir(outgoingLight, sight));
   }
+  #endif
 `;
 
 export const naturalGround = { head, colour, normal, light };

@@ -1,6 +1,6 @@
 // Houses, barriers and trees in the light and air of the natural look; as they are in the scientific one.
 import type { IUniform, MeshLambertMaterial } from "three";
-import { airHead } from "./daylight";
+import { airHead, forLook } from "./daylight";
 
 export interface ShaderParts {
   vertexHead?: string;
@@ -24,14 +24,14 @@ export function lit(material: MeshLambertMaterial, uniforms: Record<string, IUni
       .replace("#include <common>", `#include <common>\n${airHead}\n${head}`)
       .replace("#include <color_fragment>", `#include <color_fragment>\n${colour}`)
       .replace("#include <opaque_fragment>", `
-        if (uNatural > 0.5) {
+        #ifdef NATURAL
           vec3 sight = (vec4(-vViewPosition, 0.0) * viewMatrix).xyz;
           ${light}
           outgoingLight = developed(throughAir(outgoingLight, sight));
-        }
+        #endif
         #include <opaque_fragment>`);
   };
   // Without it three.js would take all of these for one program.
   material.customProgramCacheKey = () => vertexHead + place + head + colour + light;
-  return material;
+  return forLook(material, uniforms["uNatural"]);
 }
