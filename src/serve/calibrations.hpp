@@ -16,8 +16,8 @@
 #include "run/variants.hpp"
 #include "scene/scene.hpp"
 #include "serve/executor.hpp"
+#include "serve/long_task.hpp"
 #include "serve/message.hpp"
-#include "serve/undertaking.hpp"
 
 namespace talus::serve {
 
@@ -57,7 +57,7 @@ class Calibrations {
 
   private:
     using Clock = std::chrono::steady_clock;
-    using State = Undertaking::State;
+    using State = LongTask::State;
     struct Ending {
         State state = State::failed;
         std::string message;
@@ -93,7 +93,7 @@ class Calibrations {
     run::SceneSource source_;  // of the present calibration
     std::function<void(nlohmann::json)> tell_;
     mutable std::mutex mutex_;            // guards the following members
-    Undertaking calibration_;             // the current or the last one
+    LongTask calibration_;                // the current or the last one
     messages::CalibrationStatus status_;  // what describe() gives beside that
     nlohmann::json followed_, taken_;     // observations of the setup; null: those of the scene
     bool busy_ = false, closed_ = false;

@@ -10,9 +10,9 @@
 
 #include "messages/messages.hpp"
 #include "serve/executor.hpp"
+#include "serve/long_task.hpp"
 #include "serve/sent_files.hpp"
 #include "serve/session.hpp"
-#include "serve/undertaking.hpp"
 #include "twin/recorded_flow.hpp"
 
 namespace talus::serve {
@@ -42,7 +42,7 @@ class FlowExports {
     void file(const std::string& name, const Respond& respond) const;
 
   private:
-    struct Job : Undertaking {
+    struct Job : LongTask {
         std::string scenario;
         double share = 0;
         std::vector<std::string> files;  ///< names, in the order of their formats

@@ -12,7 +12,7 @@
 #include "core/result.hpp"
 #include "design/design.hpp"
 #include "ensemble/plan.hpp"
-#include "serve/undertaking.hpp"
+#include "serve/long_task.hpp"
 
 /// A job of the start page: an ensemble, a calibration, a validation, risk, options or the design of a barrier that a
 /// command of the program computes.
@@ -53,7 +53,7 @@ struct WantedJob {
 [[nodiscard]] std::vector<std::string> arguments_of(const WantedJob& wanted, const std::filesystem::path& scene,
                                                     const std::filesystem::path& folder);
 
-struct Job : Undertaking {
+struct Job : LongTask {
     Job() { state = State::waiting; }
 
     std::string id;  ///< also the name of its folder: "ensemble-3"

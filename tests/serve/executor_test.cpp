@@ -2,9 +2,12 @@
 
 #include <array>
 #include <atomic>
+#include <chrono>
+#include <condition_variable>
 #include <future>
 #include <latch>
 #include <memory>
+#include <mutex>
 #include <pthread.h>
 #include <string>
 #include <sys/resource.h>
@@ -46,13 +49,25 @@ TEST_F(ExecutorTest, tasks_of_a_lane_run_one_after_the_other_in_order) {
 
 TEST_F(ExecutorTest, all_lanes_may_be_busy_at_the_same_time) {
     constexpr int count = 20;
-    std::latch together(count + 1);
+    std::mutex mutex;
+    std::condition_variable changed;
+    int busy = 0;
+    bool over = false;
     std::vector<std::unique_ptr<Lane>> lanes;
     for (int k = 0; k < count; ++k) {
         lanes.push_back(std::make_unique<Lane>(executor_, "lane"));
-        lanes.back()->post([&] { together.arrive_and_wait(); });
+        lanes.back()->post([&] {
+            std::unique_lock lock(mutex);
+            ++busy;
+            changed.notify_all();
+            changed.wait(lock, [&] { return busy == count || over; });
+        });
     }
-    together.arrive_and_wait();
+    std::unique_lock lock(mutex);
+    EXPECT_TRUE(changed.wait_for(lock, std::chrono::seconds(30), [&] { return busy == count; }))
+        << busy << " of " << count << " lanes are busy, the others wait for them";
+    over = true;
+    changed.notify_all();
 }
 
 TEST_F(ExecutorTest, a_task_may_wait_for_another_lane) {

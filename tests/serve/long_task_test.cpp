@@ -1,15 +1,15 @@
-#include "serve/undertaking.hpp"
+#include "serve/long_task.hpp"
 
 #include <gtest/gtest.h>
 
 namespace talus::test {
 namespace {
 
-using serve::Undertaking;
-using State = serve::Undertaking::State;
+using serve::LongTask;
+using State = serve::LongTask::State;
 
-TEST(Undertaking, what_waits_is_cancelled_at_once_and_what_runs_when_it_has_seen_it) {
-    Undertaking one;
+TEST(LongTask, what_waits_is_cancelled_at_once_and_what_runs_when_it_has_seen_it) {
+    LongTask one;
     EXPECT_STREQ(one.state_name(), "idle");
     EXPECT_FALSE(one.is_open());
     one.state = State::waiting;
@@ -24,8 +24,8 @@ TEST(Undertaking, what_waits_is_cancelled_at_once_and_what_runs_when_it_has_seen
     EXPECT_FALSE(one.cancel()) << "again";
 }
 
-TEST(Undertaking, what_has_ended_says_why_unless_it_is_done) {
-    Undertaking one;
+TEST(LongTask, what_has_ended_says_why_unless_it_is_done) {
+    LongTask one;
     one.state = State::running;
     one.message = "7 values pass";
     one.wall_remaining = 3;

@@ -12,7 +12,7 @@ namespace talus::serve {
 
 /// Something that takes long, which people begin and may cancel: a job, a calibration, an export of the moving flow.
 /// Its owner guards it with a lock, and has what it is about and what it finds.
-struct Undertaking {
+struct LongTask {
     enum class State { idle, waiting, running, cancelling, done, cancelled, interrupted, failed };
     static constexpr std::array state_names = {"idle", "waiting",   "running",     "cancelling",
                                                "done", "cancelled", "interrupted", "failed"};
