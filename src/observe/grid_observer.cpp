@@ -1,7 +1,6 @@
 #include "observe/grid_observer.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 #include <utility>
@@ -19,21 +18,6 @@ constexpr double thinnest_share = 0.1;
 /// Debris this near to a cell is at the front when it arrives there, in cells. The cell's own speed says little: its
 /// debris is still thin, and resistance slows a thin layer most.
 constexpr int head_cells = 2;
-
-constexpr int strip_cells = 16;
-
-/// Calls f(first, count) for the strips of a row, each of strip_cells cells but the last, that have debris deeper than
-/// `limit`, m, somewhere.
-template <class F>
-void for_each_strip_deeper(const depth::CellRow& row, float limit, const F& f) {
-    const int count = row.last - row.first;
-    for (int first = 0; first < count; first += strip_cells) {
-        const int cells = std::min(strip_cells, count - first);
-        int found = 0;
-        for (int k = first; k < first + cells; ++k) found += row.depth[k] > limit ? 1 : 0;
-        if (found > 0) f(first, cells);
-    }
-}
 
 }  // namespace
 
@@ -130,42 +114,34 @@ void GridObserver::measure_cells(const depth::Solver& solver) {
     const auto arrives = static_cast<float>(outputs_.arrival_depth);
     const auto time = static_cast<float>(solver.time());
     const GridGeometry& g = solver.geometry();
-    const auto arrive = [&](std::size_t cell, float depth) {
-        if (!(depth > arrives) || !std::isnan(reached_.arrival_time[cell])) return;
-        reached_.arrival_time[cell] = time;
-        const FrontRecord::Head head = head_at(solver, cell);
-        reached_.arrival_speed[cell] = static_cast<float>(head.mean);
-        arrival_fastest_[cell] = static_cast<float>(head.fastest);
+    const auto arrive = [&](const depth::CellRow& row) {
+        const std::size_t west = g.index(row.first, row.row);
+        const float* const reached_at = &reached_.arrival_time[west];
+        depth::for_each_of_few(
+            row.last - row.first, [&](int k) { return row.depth[k] > arrives && !(reached_at[k] >= 0); },
+            [&](int k) {
+                const std::size_t cell = west + static_cast<std::size_t>(k);
+                reached_.arrival_time[cell] = time;
+                const FrontRecord::Head head = head_at(solver, cell);
+                reached_.arrival_speed[cell] = static_cast<float>(head.mean);
+                arrival_fastest_[cell] = static_cast<float>(head.fastest);
+            });
     };
     if (solver.steps() == 0 || !solver.active()) {
         for (int r = 0; r < g.rows; ++r) {
             const depth::CellRow row = solver.row(r);
             depth::for_each_deeper(row, thinnest, [&](int k) {
-                const std::size_t cell = g.index(k, r);
-                reached_.depth[cell] = std::max(reached_.depth[cell], row.depth[k]);
-                arrive(cell, row.depth[k]);
+                float& peak = reached_.depth[g.index(k, r)];
+                peak = std::max(peak, row.depth[k]);
             });
+            arrive(row);
         }
         return;
     }
     solver.for_each_active_row([&](const depth::CellRow& row) {
         const std::size_t west = g.index(row.first, row.row);
-        for_each_strip_deeper(row, thinnest, [&](int first, int count) {
-            // In loops that compilers turn into vectors: speeds first, which nothing else writes to.
-            std::array<float, strip_cells> depths{}, speeds{};
-            for (int k = 0; k < count; ++k) {
-                const float depth = row.depth[first + k], speed = speed_of(row, first + k);
-                depths[static_cast<std::size_t>(k)] = depth > thinnest ? depth : 0;
-                speeds[static_cast<std::size_t>(k)] = depth > thinnest ? speed : 0;
-            }
-            float* peak_depth = &reached_.depth[west + static_cast<std::size_t>(first)];
-            float* peak_speed = &reached_.speed[west + static_cast<std::size_t>(first)];
-            for (int k = 0; k < count; ++k)
-                peak_depth[k] = std::max(peak_depth[k], depths[static_cast<std::size_t>(k)]);
-            for (int k = 0; k < count; ++k)
-                peak_speed[k] = std::max(peak_speed[k], speeds[static_cast<std::size_t>(k)]);
-            for (int k = first; k < first + count; ++k) arrive(west + static_cast<std::size_t>(k), row.depth[k]);
-        });
+        raise_peaks_(row, thinnest, &reached_.depth[west], &reached_.speed[west]);
+        arrive(row);
     });
 }
 

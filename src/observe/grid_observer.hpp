@@ -5,6 +5,7 @@
 
 #include "core/grid.hpp"
 #include "depth/solver.hpp"
+#include "observe/cell_peaks.hpp"
 #include "observe/discharge.hpp"
 #include "observe/energy.hpp"
 #include "observe/front_tracker.hpp"
@@ -95,6 +96,7 @@ class GridObserver {
     terrain::FlowPath flow_path_;
     double density_, gravity_;
     /// By cell. Speeds of arrival are the mean of the debris around it; peak pressures follow from peak speeds: empty.
+    RaisePeaks raise_peaks_ = raise_peaks_function();
     MapArrays<std::vector<float>> reached_;
     std::vector<float> arrival_fastest_;  ///< m/s, the largest speed around a cell on arrival
     Grid<float> released_;                ///< m, by cell
