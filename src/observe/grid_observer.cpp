@@ -1,14 +1,18 @@
 #include "observe/grid_observer.hpp"
 
 #include <algorithm>
+#include <array>
+#include <atomic>
 #include <cmath>
 #include <limits>
+#include <numeric>
 #include <utility>
 
 #include "observe/erosion.hpp"
 #include "observe/front_tracker.hpp"
 #include "observe/grid_flow.hpp"
 #include "observe/run_out.hpp"
+#include "simd/parallel.hpp"
 
 namespace talus::observe {
 namespace {
@@ -18,6 +22,20 @@ constexpr double thinnest_share = 0.1;
 /// Debris this near to a cell is at the front when it arrives there, in cells. The cell's own speed says little: its
 /// debris is still thin, and resistance slows a thin layer most.
 constexpr int head_cells = 2;
+
+constexpr std::size_t rows_per_task = 16;  // fixed: sums must not depend on the number of threads
+
+double total(const StripSums::Places& places) {
+    return std::accumulate(places.begin(), places.end(), 0.0);
+}
+
+/// Shared by threads; a number that is not one raises nothing.
+void raise(float& largest, float number) {
+    const std::atomic_ref shared(largest);
+    float before = shared.load(std::memory_order_relaxed);
+    while (number > before && !shared.compare_exchange_weak(before, number, std::memory_order_relaxed)) {
+    }
+}
 
 }  // namespace
 
@@ -125,6 +143,7 @@ void GridObserver::measure_cells(const depth::Solver& solver) {
                 const FrontRecord::Head head = head_at(solver, cell);
                 reached_.arrival_speed[cell] = static_cast<float>(head.mean);
                 arrival_fastest_[cell] = static_cast<float>(head.fastest);
+                raise(farthest_arrival_, chainage_[cell]);
             });
     };
     if (solver.steps() == 0 || !solver.active()) {
@@ -171,18 +190,7 @@ void GridObserver::after_step(const depth::Solver& solver, double held, double s
     sections_.after_step(solver);
     read_gauges(solver, row);
     if (!row) return;
-    const GridGeometry& g = solver.geometry();
-    constexpr float none = std::numeric_limits<float>::lowest();
-    float front = std::isnan(front_) ? none : static_cast<float>(front_);
-    for (int r = 0; r < g.rows; ++r) {
-        const float* arrival = &reached_.arrival_time[g.index(0, r)];
-        const float* chainage = &chainage_[g.index(0, r)];
-        depth::for_each_of_few(
-            g.columns,
-            [&](int k) { return arrival[k] >= 0 && chainage[k] > front; },  // NaN: not reached, or off the path
-            [&](int k) { front = chainage[k]; });
-    }
-    if (front > none) front_ = front;
+    if (farthest_arrival_ > std::numeric_limits<float>::lowest()) front_ = farthest_arrival_;
     add_row(solver, held, steps_per_second);
 }
 
@@ -240,26 +248,58 @@ double GridObserver::volume_faster_than(const depth::Solver& solver, double limi
     return depth * g.cell * g.cell;
 }
 
-TimeSample GridObserver::sample(const depth::Solver& solver, double held, double steps_per_second) const {
-    TimeSample s;
+void GridObserver::add_row_to(StripSums& sums, const depth::Solver& solver, int r) const {
     const GridGeometry& g = solver.geometry();
+    const depth::CellRow row = solver.row(r);
     const double area = g.cell * g.cell;
-    double front = never;
-    for (int r = 0; r < g.rows; ++r) {
-        const depth::CellRow row = solver.row(r);
-        depth::for_each_deeper(row, 0, [&](int column) {
-            const double depth = row.depth[column];
-            if (depth > outputs_.arrival_depth) front = std::fmax(front, chainage_[g.index(column, r)]);
-            const double speed = speed_of(row, column);
-            const double volume = depth * area;
-            (speed < outputs_.deposited_speed ? s.volume_deposited : s.volume_moving) += volume;
-            s.kinetic_energy += density_ * volume * speed * speed / 2;
-            s.momentum += density_ * volume * speed;
-            s.potential_energy += density_ * volume * solver.material().gravity *
-                                  (solver.bed_at(column, r) + depth / 2 + solver.height_at(column, r));
-            s.largest_speed = std::max(s.largest_speed, speed);
-        });
+    for (int first = 0; first < g.columns; first += strip_cells) {
+        const int count = std::min(strip_cells, g.columns - first);
+        int wet = 0;
+        for (int k = first; k < first + count; ++k) wet += row.depth[k] > 0 ? 1 : 0;
+        if (wet == 0) continue;
+        StripSums::Places volume{}, speed{}, height{};
+        for (int k = 0; k < count; ++k) {
+            const auto at = static_cast<std::size_t>(k);
+            const double depth = row.depth[first + k];
+            volume[at] = depth > 0 ? depth * area : 0;
+            speed[at] = depth > 0 ? speed_of(row, first + k) : 0;
+            height[at] = depth > 0 ? solver.bed_at(first + k, r) + depth / 2 : 0;
+        }
+        for (int k = 0; solver.flies() && k < count; ++k) {
+            height[static_cast<std::size_t>(k)] += solver.height_at(first + k, r);
+        }
+        for (std::size_t k = 0; k < strip_cells; ++k) {
+            const bool deposited = speed[k] < outputs_.deposited_speed;
+            sums.deposited[k] += deposited ? volume[k] : 0;
+            sums.moving[k] += deposited ? 0 : volume[k];
+            sums.kinetic[k] += volume[k] * speed[k] * speed[k];
+            sums.momentum[k] += volume[k] * speed[k];
+            sums.potential[k] += volume[k] * height[k];
+            sums.fastest[k] = std::max(sums.fastest[k], speed[k]);
+        }
+        const float* const chainage = &chainage_[g.index(first, r)];
+        for (int k = 0; k < count; ++k) {
+            if (row.depth[first + k] > outputs_.arrival_depth && chainage[k] > sums.front) sums.front = chainage[k];
+        }
     }
+}
+
+TimeSample GridObserver::sample(const depth::Solver& solver, double held, double steps_per_second) const {
+    const auto rows = static_cast<std::size_t>(solver.geometry().rows);
+    const StripSums sums = simd::reduce_ranges(
+        rows, rows_per_task, StripSums{},
+        [&](std::size_t first, std::size_t last, StripSums sum) {
+            for (std::size_t r = first; r < last; ++r) add_row_to(sum, solver, static_cast<int>(r));
+            return sum;
+        },
+        [](const StripSums& x, const StripSums& y) { return x + y; });
+    TimeSample s;
+    s.volume_deposited = total(sums.deposited);
+    s.volume_moving = total(sums.moving);
+    s.kinetic_energy = density_ * total(sums.kinetic) / 2;
+    s.momentum = density_ * total(sums.momentum);
+    s.potential_energy = density_ * gravity_ * total(sums.potential);
+    s.largest_speed = *std::max_element(sums.fastest.begin(), sums.fastest.end());
     s.time = solver.time();
     s.volume_held = held;
     if (solver.steps() == 0) {  // nothing has been let go yet
@@ -269,7 +309,7 @@ TimeSample GridObserver::sample(const depth::Solver& solver, double held, double
     s.volume_left = solver.volume_left();
     s.volume_released = volume_released_ + held;
     s.volume_entrained = volume_entrained_;
-    s.front_chainage = front;
+    s.front_chainage = sums.front > std::numeric_limits<float>::lowest() ? sums.front : never;
     s.mean_compression = s.max_compression = s.overcompressed_share = never;
     s.time_step = solver.time_step();
     s.steps_per_second = steps_per_second;

@@ -1,6 +1,9 @@
 #pragma once
 
+#include <algorithm>
+#include <array>
 #include <cstddef>
+#include <limits>
 #include <vector>
 
 #include "core/grid.hpp"
@@ -19,6 +22,31 @@
 #include "terrain/flow_path.hpp"
 
 namespace talus::observe {
+
+inline constexpr int strip_cells = 16;
+
+/// Of the debris in some cells, place by place of the strips of cells that they lie in: compilers turn such sums into
+/// vectors.
+struct StripSums {
+    using Places = std::array<double, strip_cells>;
+    Places deposited{}, moving{};                        ///< m3
+    Places kinetic{}, momentum{}, potential{};           ///< volume times speed squared, speed, elevation
+    Places fastest{};                                    ///< m/s
+    float front = std::numeric_limits<float>::lowest();  ///< chainage of the farthest cell, m
+
+    friend StripSums operator+(StripSums a, const StripSums& b) {
+        for (std::size_t k = 0; k < strip_cells; ++k) {
+            a.deposited[k] += b.deposited[k];
+            a.moving[k] += b.moving[k];
+            a.kinetic[k] += b.kinetic[k];
+            a.momentum[k] += b.momentum[k];
+            a.potential[k] += b.potential[k];
+            a.fastest[k] = std::max(a.fastest[k], b.fastest[k]);
+        }
+        a.front = std::max(a.front, b.front);
+        return a;
+    }
+};
 
 /// Watches a run of the depth-averaged model, for the same results as those of the particles. Maps have the cells of
 /// the grid. A front is where the map's arrivals are: the path's chainage beyond which no cell was reached earlier.
@@ -76,7 +104,8 @@ class GridObserver {
         for_each_map_array(keep_map, reached_);
         keep_map(arrival_fastest_);
         keep_map(released_.values);
-        archive(structures_, gauges_, sections_, energy_, timeseries_, volume_released_, volume_entrained_, front_);
+        archive(structures_, gauges_, sections_, energy_, timeseries_, volume_released_, volume_entrained_, front_,
+                farthest_arrival_);
         if constexpr (Archive::reading) {
             if (timeseries_.empty()) archive.fail();  // it has a row from the beginning on
         }
@@ -88,6 +117,7 @@ class GridObserver {
     [[nodiscard]] FrontRecord::Head head_at(const depth::Solver& solver, std::size_t cell) const;
     void read_gauges(const depth::Solver& solver, bool row);
     void add_row(const depth::Solver& solver, double held, double steps_per_second);
+    void add_row_to(StripSums& sums, const depth::Solver& solver, int r) const;
     [[nodiscard]] Energy measure_energy(const depth::Solver& solver, const HazardMaps& hazard) const;
     [[nodiscard]] FrontRecord front_record() const;
     [[nodiscard]] HazardMaps maps(const depth::Solver& solver) const;
@@ -106,7 +136,9 @@ class GridObserver {
     GridSections sections_;
     EnergyAccount energy_;
     std::vector<TimeSample> timeseries_;
-    double volume_released_ = 0, volume_entrained_ = 0, front_ = never;
+    double volume_released_ = 0, volume_entrained_ = 0;
+    float farthest_arrival_ = std::numeric_limits<float>::lowest();  ///< chainage of a cell, m
+    double front_ = never;                                           ///< the same at the last row of the time series
 };
 
 }  // namespace talus::observe
