@@ -33,7 +33,7 @@ double total(const StripSums::Places& places) {
 void raise(float& largest, float number) {
     const std::atomic_ref shared(largest);
     float before = shared.load(std::memory_order_relaxed);
-    while (number > before && !shared.compare_exchange_weak(before, number, std::memory_order_relaxed)) {
+    while (number > before && !shared.compare_exchange_strong(before, number, std::memory_order_relaxed)) {
     }
 }
 
