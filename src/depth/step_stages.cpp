@@ -112,14 +112,9 @@ float advance(const StageData& data, const Segment& segment, std::uint8_t* chang
     const bool more = data.from.pore_pressure != nullptr || data.from.height != nullptr ||
                       data.cover.viscosity != nullptr || data.viscosity > 0 || data.laws.turbulent_thickness > 0 ||
                       data.laws.samosat.on || data.passes_east != nullptr;
-#ifdef __SANITIZE_ADDRESS__  // its checks take many minutes to compile: once, for everything
-    (void)structures, (void)more;
-    return advance_as<true, true>(data, segment, changed, computed);
-#else
     if (more) return advance_as<true, true>(data, segment, changed, computed);
     return structures ? advance_as<true, false>(data, segment, changed, computed)
                       : advance_as<false, false>(data, segment, changed, computed);
-#endif
 }
 
 Stages make_stages() {
