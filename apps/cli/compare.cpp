@@ -49,14 +49,14 @@ struct CompareArguments {
     std::vector<std::string> overrides;
 };
 
-struct Job {
+struct ComparisonJob {
     SceneInput input;         ///< for the particles
     scene::Scene grid_scene;  ///< the same for the depth-averaged model
     fs::path shown;
     products::OutputFolder output;
 };
 
-Result<Job> open_job(const CompareArguments& arguments, InterruptWatch& watch) {
+Result<ComparisonJob> open_comparison(const CompareArguments& arguments, InterruptWatch& watch) {
     std::vector<std::string> overrides = arguments.overrides;
     if (arguments.threads) overrides.push_back(fmt::format("solver.thread_count={}", *arguments.threads));
     overrides.emplace_back("solver.model=particles");
@@ -74,10 +74,10 @@ Result<Job> open_job(const CompareArguments& arguments, InterruptWatch& watch) {
         arguments.output.empty() ? default_output(input.short_name + "_compared") : fs::path(arguments.output);
     TALUS_ASSIGN(auto output, products::OutputFolder::create(shown, arguments.force));
     watch.remove_at_once(output.path());
-    return Job{std::move(input), std::move(grid_scene), shown, std::move(output)};
+    return ComparisonJob{std::move(input), std::move(grid_scene), shown, std::move(output)};
 }
 
-Status write_all(Job& job, const report::BothModels& models, const run::SecondOpinion& opinion,
+Status write_all(ComparisonJob& job, const report::BothModels& models, const run::SecondOpinion& opinion,
                  const report::Json& results, InterruptWatch& watch) {
     const fs::path folder = job.output.path();
     for (const auto& [name, scene, result] :
@@ -132,7 +132,7 @@ int compare_command(const CompareArguments& arguments) {
     if (!arguments.data.empty()) set_data_folder(arguments.data);
     InterruptWatch watch;
     ProgressReporter progress(progress_style(arguments.quiet, arguments.json));
-    auto job = open_job(arguments, watch);
+    auto job = open_comparison(arguments, watch);
     if (!job) return fail(exit_code::bad_input, job.error().message);
     if (!arguments.quiet && !arguments.json) {
         for (const std::string& note : job->grid_scene.notes) (void)print(fmt::format("note: {}\n", note));

@@ -55,7 +55,7 @@ void add_heading(const run::Quantity& quantity, Cells& above, Cells& below) {
     below.push_back(cut == std::string::npos ? quantity.unit : quantity.name.substr(cut + 1) + ", " + quantity.unit);
 }
 
-std::string cost_text(const run::RunResult& result) {
+std::string run_cost_text(const run::RunResult& result) {
     return fmt::format("{:.0f}", result.wall_time);
 }
 
@@ -68,14 +68,14 @@ std::string table(const run::Comparison& comparison, const run::RunResult& base)
     }
     above.emplace_back("wall");
     below.emplace_back("time, s");
-    given.push_back(cost_text(base));
+    given.push_back(run_cost_text(base));
     if (judged) below.emplace_back("result");
     std::vector<Cells> rows{above, below, given};
     for (const run::Comparison::Row& row : comparison.rows) {
         Cells cells{row.run.variant.name};
         if (row.run.result) {
             for (const run::Change& change : row.changes) cells.push_back(change_text(change, judged));
-            cells.push_back(cost_text(*row.run.result));
+            cells.push_back(run_cost_text(*row.run.result));
             if (judged) cells.emplace_back(verdict_name(row.verdict()));
         } else {
             cells.push_back("missing: " + row.run.missing);

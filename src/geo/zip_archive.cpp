@@ -23,15 +23,15 @@ constexpr std::size_t block_size = std::size_t{1} << 20;
 constexpr std::size_t longest_name = 255;
 
 /// Formats of one file, or of files of one name, that name no others.
-constexpr std::array<std::string_view, 26> plain_formats = {
+constexpr std::array<std::string_view, 26> archived_formats = {
     "GTiff",  "COG",  "AAIGrid", "GPKG", "GeoJSON", "ESRI Shapefile", "FlatGeobuf",  "CSV",       "KML",
     "LIBKML", "HFA",  "PNG",     "JPEG", "XYZ",     "netCDF",         "HDF5",        "SRTMHGT",   "USGSDEM",
     "EHdr",   "ENVI", "SAGA",    "GSAG", "GSBG",    "GS7BG",          "JP2OpenJPEG", "GeoJSONSeq"};
 
-struct CloseFile {
+struct CloseArchived {
     void operator()(VSILFILE* file) const { VSIFCloseL(file); }
 };
-using File = std::unique_ptr<VSILFILE, CloseFile>;
+using File = std::unique_ptr<VSILFILE, CloseArchived>;
 
 std::string inside(const fs::path& archive, const std::string& name = "") {
     // Braces around the archive's name: it may hold any characters, and need not end in .zip.
@@ -184,7 +184,7 @@ Status write_zip(const fs::path& archive, const std::vector<ZipEntry>& entries) 
 }
 
 bool names_no_others(const std::string& format) {
-    return std::find(plain_formats.begin(), plain_formats.end(), format) != plain_formats.end();
+    return std::find(archived_formats.begin(), archived_formats.end(), format) != archived_formats.end();
 }
 
 Result<std::vector<fs::path>> files_of(const fs::path& file) {

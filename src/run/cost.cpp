@@ -25,7 +25,7 @@ double seconds_since(Clock::time_point start) {
 }
 
 /// The spacing of so many particles, well below the limit, or a finer one of which every release and inflow fills one.
-double spacing_of(const scene::Scene& scene, double particles) {
+double spacing_for(const scene::Scene& scene, double particles) {
     double volume = total_volume(scene) / std::min(particles, 0.9 * scene.spec.solver.particle_limit);
     for (const terrain::Release& release : scene.releases) volume = std::min(volume, release.volume);
     for (const terrain::Inflow& inflow : scene.inflows) volume = std::min(volume, inflow.volume());
@@ -72,7 +72,7 @@ sim::Model model_of(const scene::Scene& scene, double particle_spacing) {
 Result<Rehearsal> rehearse(const scene::Scene& scene, double particle_spacing,
                            const std::atomic<bool>& stop_requested) {
     Rehearsal rehearsal;
-    rehearsal.particle_spacing = std::max(particle_spacing, spacing_of(scene, few_particles));
+    rehearsal.particle_spacing = std::max(particle_spacing, spacing_for(scene, few_particles));
     const Clock::time_point start = Clock::now();
     TALUS_ASSIGN(const std::unique_ptr<Run> few, Run::start(scene, rehearsal.particle_spacing));
     double seeding_time = seconds_since(start);
@@ -81,7 +81,7 @@ Result<Rehearsal> rehearse(const scene::Scene& scene, double particle_spacing,
     rehearsal.simulated_time = few->summary().time;
     rehearsal.complete = few->phase() == RunPhase::at_rest || few->phase() == RunPhase::ended;
 
-    const double finer = std::max(particle_spacing, spacing_of(scene, many_particles));
+    const double finer = std::max(particle_spacing, spacing_for(scene, many_particles));
     const double few_time = early_step_time(rehearsal.steps);
     if (finer < rehearsal.particle_spacing && few_time > 0 && seeded > 0 && !stop_requested.load()) {
         const Clock::time_point again = Clock::now();

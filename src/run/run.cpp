@@ -67,6 +67,7 @@ Run::Run(RunStart start)
       outputs_(start.outputs),
       followed_corridor_width_(start.followed_corridor_width),
       endless_(start.endless),
+      measured_(start.measured),
       smallest_time_step_(std::numeric_limits<double>::infinity()) {
     observer_.watch(start.gauges);
     observer_.watch(model(), ground(), state(), start.cross_sections);
@@ -106,12 +107,12 @@ bool Run::over() {
 }
 
 void Run::take_step() {
-    const Status stepped = simulation_.advance(&observer_);
+    const Status stepped = simulation_.advance(watcher());
     smallest_time_step_ = std::min(smallest_time_step_, summary().time_step);
     largest_time_step_ = std::max(largest_time_step_, summary().time_step);
     if (!stepped) {
         // A run that continues all the same needs gapless measurements.
-        if (endless_) observer_.observe(model(), ground(), state());
+        if (endless_ && measured_) observer_.observe(model(), ground(), state());
         if (!fault_) fault_ = record_fault(model(), ground(), simulation_.kept(), state(), stepped.error().message);
         return stop(RunPhase::fault, stepped.error().message);
     }
@@ -131,7 +132,7 @@ void Run::change(const std::function<std::uint32_t(sim::Model&, sim::Ground&, si
     std::uint32_t first_new_id = 0;
     simulation_.change(
         [&](sim::Model& model, sim::Ground& ground, sim::State& state) { first_new_id = edit(model, ground, state); });
-    observer_.follow(model(), ground(), state(), first_new_id);
+    if (measured_) observer_.follow(model(), ground(), state(), first_new_id);
     simulation_.keep();
     stop_rule_.reset(summary().time);
     if (phase_ == RunPhase::at_rest) stop(RunPhase::ready, "");

@@ -33,6 +33,8 @@ struct RunStart {
     std::vector<terrain::CrossSection> cross_sections = {};
     /// Continues at rest, beyond solver.end_time and after a fault: the caller decides when it ends.
     bool endless = false;
+    /// False: an endless run whose caller reads the state; the observer has what was at the start.
+    bool measured = true;
     /// m: the flow path is a first guess, and the result is along the path that debris followed. 0: it stays.
     double followed_corridor_width = 0;
 };
@@ -59,7 +61,7 @@ class Run {
     /// Takes a step and measures it. False: the run was over before, or the step cannot be trusted; see phase().
     bool advance();
     /// Adds the particles of inflows that are due. A step begins with it.
-    void inject_inflow() { simulation_.inject_inflow(&observer_); }
+    void inject_inflow() { simulation_.inject_inflow(watcher()); }
 
     /// Lets `edit` change model, ground and state, as Simulation::change() does; a run at rest becomes ready again.
     /// `edit` returns the id of the first new particle.
@@ -100,6 +102,7 @@ class Run {
     [[nodiscard]] bool over();
     [[nodiscard]] StillMoving moving_now() const;
     void take_step();
+    [[nodiscard]] observe::Observer* watcher() { return measured_ ? &observer_ : nullptr; }
     [[nodiscard]] RunStatus status() const;
     void stop(RunPhase phase, std::string why);
     [[nodiscard]] bool inflow_to_come() const {
@@ -113,7 +116,7 @@ class Run {
     StopRule stop_rule_;
     params::OutputSpec outputs_;
     double followed_corridor_width_;
-    bool endless_;
+    bool endless_, measured_;
     RunPhase phase_ = RunPhase::ready;
     std::string stop_reason_;
     std::optional<FaultRecord> fault_;

@@ -144,17 +144,18 @@ double momentum_along(const sim::Model& model, const sim::State& state) {
 
 namespace {
 
-run::RunStart endless(run::RunStart start, const Watch& watch) {
+run::RunStart endless(run::RunStart start, const Watch& watch, Observed observed) {
     start.model.solver.thread_count = watch.thread_count;
     start.model.solver.backend = watch.backend;
     start.endless = true;
+    start.measured = observed == Observed::yes;
     return start;
 }
 
 }  // namespace
 
-Trial::Trial(run::RunStart start, const Watch& watch, OnFault on_fault)
-    : run_(endless(std::move(start), watch)), watch_(watch), on_fault_(on_fault) {
+Trial::Trial(run::RunStart start, const Watch& watch, OnFault on_fault, Observed observed)
+    : run_(endless(std::move(start), watch, observed)), watch_(watch), on_fault_(on_fault) {
     // As scenes refuse it: smoothing of more than the whole velocity difference is cut, and would be another viscosity.
     const double longest = sim::longest_viscous_step(model().viscosity);
     if (model().solver.time_step > longest * (1 + 1e-9)) {

@@ -89,10 +89,15 @@ enum class OnFault {
     note,  ///< continue: for results that are only shown, where a fault is part of the result
 };
 
+enum class Observed {
+    no,   ///< the state alone: walls and maps cost up to half of a step, and side walls are touched everywhere
+    yes,  ///< maps and impacts too, in observer()
+};
+
 /// A run under test: until a time, or the first step that cannot be trusted.
 class Trial {
   public:
-    Trial(run::RunStart start, const Watch& watch, OnFault on_fault = OnFault::stop);
+    Trial(run::RunStart start, const Watch& watch, OnFault on_fault = OnFault::stop, Observed observed = Observed::no);
 
     /// As Run::inject_inflow().
     void inject_inflow() { run_.inject_inflow(); }

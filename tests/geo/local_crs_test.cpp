@@ -16,7 +16,7 @@ using testing::AllOf;
 using testing::HasSubstr;
 
 const char* const flume_system = R"(LOCAL_CS["flume",UNIT["metre",1]])";
-const char* const square = "POLYGON ((0.1 0.1, 0.3 0.1, 0.3 0.2, 0.1 0.2, 0.1 0.1))";
+const char* const square_wkt = "POLYGON ((0.1 0.1, 0.3 0.1, 0.3 0.2, 0.1 0.2, 0.1 0.1))";
 
 /// A flume of 20 x 15 cells of 0.02 m.
 class LocalCoordinates : public testing::Test {
@@ -66,8 +66,9 @@ TEST_F(LocalCoordinates, layers_that_say_nothing_are_taken_to_be_in_them) {
         test::write_text(folder_.file("a.geojson"),
                          R"({"type": "Polygon", "coordinates": [[[0.1, 0.1], [0.3, 0.1], [0.3, 0.2], [0.1, 0.1]]]})"),
         test::write_vector(folder_.file("b.shp"), {.driver = "ESRI Shapefile", .epsg = 0, .type = wkbPolygon},
-                           {{square, {}}}),
-        test::write_vector(folder_.file("c.gpkg"), {.driver = "GPKG", .epsg = 0, .type = wkbPolygon}, {{square, {}}})};
+                           {{square_wkt, {}}}),
+        test::write_vector(folder_.file("c.gpkg"), {.driver = "GPKG", .epsg = 0, .type = wkbPolygon},
+                           {{square_wkt, {}}})};
     for (const std::string& file : files) {
         const auto layer = read_polygons(file, "", Crs::own_metres());
         ASSERT_TRUE(layer.ok()) << layer.error().message;
@@ -91,8 +92,8 @@ TEST_F(LocalCoordinates, a_layer_with_a_local_system_of_any_name_is_in_them) {
 }
 
 TEST_F(LocalCoordinates, a_layer_with_a_place_on_the_globe_is_refused_in_one_sentence) {
-    const std::string file = test::write_vector(folder_.file("a.gpkg"),
-                                                {.driver = "GPKG", .epsg = 2326, .type = wkbPolygon}, {{square, {}}});
+    const std::string file = test::write_vector(
+        folder_.file("a.gpkg"), {.driver = "GPKG", .epsg = 2326, .type = wkbPolygon}, {{square_wkt, {}}});
     EXPECT_THAT(refusal(file), AllOf(HasSubstr("is in EPSG:2326"), HasSubstr("the terrain in local coordinates")));
     EXPECT_LT(refusal(file).size(), file.size() + 120) << "no WKT";
 }

@@ -15,7 +15,7 @@ namespace {
 using testing::inclined_plane;
 
 /// With the constants of com1DFA, and its mu.
-params::MaterialSpec snow() {
+params::MaterialSpec loose_snow() {
     params::MaterialSpec material;
     material.samosat = true;
     material.friction_coefficient = 0.155;
@@ -31,7 +31,7 @@ TEST(Samosat, logarithm_is_that_of_the_library) {
 
 TEST(Samosat, has_the_stress_worked_out_by_hand) {
     // h = 1 m, v = 20 m/s, 30 degrees: ln 20 = 2.995732, over 0.43 and with 4.13 11.09682, whose square is 123.1394.
-    const Samosat law = samosat_of(snow());
+    const Samosat law = samosat_of(loose_snow());
     ASSERT_TRUE(law.on);
     EXPECT_NEAR(wall_drag(law, 1.0), 1 / 123.1394, 1e-8);
     // sigma = 200 x 9.80665 x cos 30 = 1698.561 Pa, R_s = 200 x 400 / 1698.561 = 47.09869.
@@ -46,7 +46,7 @@ TEST(Samosat, has_the_stress_worked_out_by_hand) {
 }
 
 TEST(Samosat, is_finite_for_thin_slow_and_weightless_debris) {
-    const Samosat law = samosat_of(snow());
+    const Samosat law = samosat_of(loose_snow());
     for (const double thickness : {0.05, 0.049, 1e-6, 0.0}) {
         EXPECT_DOUBLE_EQ(wall_drag(law, thickness), 1 / (4.13 * 4.13)) << thickness << ": no thinner than R";
     }
@@ -60,7 +60,7 @@ TEST(Samosat, is_finite_for_thin_slow_and_weightless_debris) {
 }
 
 TEST(Samosat, slows_the_flow_by_its_thickness_and_never_reverses_it) {
-    const Model model = make_model(snow(), {}, 0.1);
+    const Model model = make_model(loose_snow(), {}, 0.1);
     ASSERT_TRUE(slows_by_speed(model));
     ASSERT_TRUE(resists_by_particle(model));
     const auto ground = ground_resistance(model, Vec3<double>{});
@@ -79,7 +79,7 @@ TEST(Samosat, slows_the_flow_by_its_thickness_and_never_reverses_it) {
 }
 
 TEST(Samosat, doubles_friction_at_rest_and_loses_that_with_speed) {
-    const Model model = make_model(snow(), {}, 0.1);
+    const Model model = make_model(loose_snow(), {}, 0.1);
     const terrain::Terrain level = inclined_plane(0, 10, 10);
     const double dt = 0.01, fall = model.gravity * dt;
     const Vec3<double> touching{0, 0, level.sample(0.0, 0.0).height + 0.05};
@@ -101,7 +101,7 @@ TEST(Samosat, doubles_friction_at_rest_and_loses_that_with_speed) {
 }
 
 TEST(Samosat, gives_debris_inside_the_friction_of_the_ground_at_rest_unless_the_scene_has_another) {
-    params::MaterialSpec material = snow();
+    params::MaterialSpec material = loose_snow();
     EXPECT_DOUBLE_EQ(make_model(material, {}, 0.1).internal_friction_coefficient, 0.31);
     EXPECT_DOUBLE_EQ(make_model(material, {}, 0.1).building_friction_coefficient, 0.155);
     material.samosat_fluidization = 0;
@@ -117,7 +117,7 @@ double speed_of_layer(double start, double tangent, double time) {
     constexpr int side = 20;
     const double slope = std::atan(tangent);
     const terrain::Terrain terrain = inclined_plane(slope * 180 / M_PI, 60, 8);
-    params::MaterialSpec material = snow();
+    params::MaterialSpec material = loose_snow();
     material.viscosity = 0;
     Model model = make_model(material, {}, spacing_of_sheet);
     Ground ground(terrain);
@@ -155,7 +155,7 @@ TEST(Samosat, gives_debris_its_terminal_velocity_from_above_and_from_below) {
     const double tangent = 0.5, cosine = 1 / std::sqrt(1.25), gravity = ModelValues{}.gravity;
     // Particles in a lattice: none stands where there are more than elsewhere, as scattered ones do.
     const double in_column = 0.04 / (apart * apart), thickness = counted_by_area(in_column) * 0.001 / 0.04;
-    const Samosat law = samosat_of(snow());
+    const Samosat law = samosat_of(loose_snow());
     // g (tan - mu (1 + slow_share)) cos = drag v^2 / h, where the drag is the smaller, the slower.
     double law_speed = 0;
     for (int k = 0; k < 50; ++k) {

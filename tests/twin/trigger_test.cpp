@@ -15,7 +15,7 @@ namespace {
 using ::testing::HasSubstr;
 
 /// The channel with a second scar, a gauged inflow across its upper end, a house, and triggers for each source.
-scene::Scene gauged_scene(int threads = 2) {
+scene::Scene scene_with_gauge(int threads = 2) {
     scene::Scene scene = channel_scene();
     scene.spec.solver.thread_count = threads;
     terrain::Release second = scene.releases[0];
@@ -56,7 +56,7 @@ json reading(double time, const json& discharge) {
 }
 
 TEST(Trigger, starts_with_its_own_source_and_the_values_of_the_message) {
-    const auto scenario = open(gauged_scene());
+    const auto scenario = open(scene_with_gauge());
     const Done done = act(*scenario, start("scar", {{"volume_m3", 20}, {"pore_pressure_ratio", 0.3}}));
     EXPECT_THAT(done.sentence, HasSubstr("started by trigger \"scar\", volume 20 m3, pore pressure ratio 0.3"));
     const json setup = setup_json(*scenario);
@@ -74,7 +74,7 @@ TEST(Trigger, starts_with_its_own_source_and_the_values_of_the_message) {
 }
 
 TEST(Trigger, refuses_values_outside_the_limits_of_the_scene) {
-    const auto scenario = open(gauged_scene());
+    const auto scenario = open(scene_with_gauge());
     const std::pair<json, const char*> bad[] = {
         {start("scar", {{"volume_m3", 101}}), "volume_m3 = 101"},
         {start("scar", {{"volume_m3", 0}}), "volume_m3 = 0"},
@@ -110,7 +110,7 @@ TEST(Trigger, a_reading_changes_the_hydrograph_from_its_time_on_and_holds) {
 }
 
 /// A run with a gauge: more, late, an undone change between, then silence.
-void play(Scenario& scenario) {
+void play_triggers(Scenario& scenario) {
     act(scenario, start("gauge", {{"discharge_m3ps", 6}}));
     run_until(scenario, 1);
     act(scenario, reading(1.5, 12));
@@ -127,8 +127,8 @@ void play(Scenario& scenario) {
 }
 
 TEST(Trigger, a_gauge_feeds_the_inflow_of_the_run_and_its_silence_ends_it) {
-    const auto scenario = open(gauged_scene());
-    play(*scenario);
+    const auto scenario = open(scene_with_gauge());
+    play_triggers(*scenario);
     const json setup = setup_json(*scenario);
     EXPECT_EQ(setup["pending_restart"], false);
     EXPECT_EQ(setup["inflows"][0]["in_force"], true);
@@ -155,12 +155,12 @@ TEST(Trigger, a_gauge_feeds_the_inflow_of_the_run_and_its_silence_ends_it) {
 }
 
 TEST(Trigger, replays_to_the_same_hash_with_every_value_of_the_gauge) {
-    const auto scenario = open(gauged_scene());
-    play(*scenario);
+    const auto scenario = open(scene_with_gauge());
+    play_triggers(*scenario);
     const auto journal = read_journal(journal_json(*scenario).dump());
     ASSERT_TRUE(journal) << journal.error().message;
     for (const int threads : {1, 2}) {
-        const auto again = replay(*journal, std::make_shared<const scene::Scene>(gauged_scene(threads)));
+        const auto again = replay(*journal, std::make_shared<const scene::Scene>(scene_with_gauge(threads)));
         ASSERT_TRUE(again) << again.error().message;
         EXPECT_EQ(again->hash, to_hex(hash(*scenario)));
         EXPECT_EQ(setup_json(*again->scenario)["inflows"], setup_json(*scenario)["inflows"]);
@@ -168,11 +168,11 @@ TEST(Trigger, replays_to_the_same_hash_with_every_value_of_the_gauge) {
     Journal other = *journal;
     ASSERT_EQ(other.entries[1].action["action"], "gauge");
     other.entries[1].action["discharge_m3ps"] = 12.5;
-    EXPECT_NE(replay(other, std::make_shared<const scene::Scene>(gauged_scene()))->hash, journal->hash);
+    EXPECT_NE(replay(other, std::make_shared<const scene::Scene>(scene_with_gauge()))->hash, journal->hash);
 }
 
 TEST(Trigger, a_gauge_that_would_bring_too_many_particles_is_refused) {
-    scene::Scene scene = gauged_scene();
+    scene::Scene scene = scene_with_gauge();
     scene.spec.solver.particle_limit = 900;
     scene.spec.triggers[1].hold_time = 10;
     const auto scenario = open(std::move(scene));

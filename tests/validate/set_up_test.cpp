@@ -95,5 +95,25 @@ TEST(Trial, holds_debris_behind_a_wall_until_that_is_taken_away) {
     EXPECT_GT(front(), below + 1);
 }
 
+TEST(Trial, moves_debris_alike_whether_its_walls_and_maps_are_observed_or_not) {
+    const Watch watch;
+    const auto start = [] {
+        terrain::Terrain terrain = make_terrain(12, 8, 1, [](double, double) { return 0.0; });
+        const std::vector<terrain::Building> walls = make_slice(terrain, 1.5, 3);
+        params::MaterialSpec material;
+        material.friction_coefficient = 0.1;
+        sim::Model model = sim::make_model(material, {}, 0.5);
+        sim::Ground ground(terrain, walls, model.support_radius);
+        return run::RunStart{std::move(model), std::move(ground), state_at_rest(fill_block(0, 0, 4, 3, 4, 0.5))};
+    };
+    Trial observed(start(), watch, OnFault::stop, Observed::yes), plain(start(), watch);
+    ASSERT_TRUE(observed.advance_to(1));
+    ASSERT_TRUE(plain.advance_to(1));
+    EXPECT_EQ(plain.state().position.x, observed.state().position.x);
+    EXPECT_GT(observed.observer().impacts()[0].impulse, 0);
+    EXPECT_EQ(plain.observer().impacts()[0].impulse, 0);
+    EXPECT_GT(observed.observer().timeseries().size(), plain.observer().timeseries().size());
+}
+
 }  // namespace
 }  // namespace talus::validate

@@ -62,7 +62,8 @@ Measured measure(const NetSpec& spec, double passing, double spacing, const Sett
     params::OutputSpec outputs;
     outputs.sample_interval = 0.05 * stream / (speed + wave);
     outputs.map_cell = spec.depth;
-    Trial trial({std::move(model), std::move(ground), std::move(start), {}, {}, outputs}, watch, OnFault::note);
+    Trial trial({std::move(model), std::move(ground), std::move(start), {}, {}, outputs}, watch, OnFault::note,
+                Observed::yes);
     const observe::Observer& observer = trial.observer();
     const bool done = trial.advance_to(stream / (speed + wave));
     Measured measured;

@@ -75,7 +75,8 @@ Result<std::vector<observe::BuildingImpact>> measure(const ImpactSpec& spec, dou
     }
     sim::Model model = sim::make_model(setting.material, setting.solver, std::cbrt(spacing));
     sim::Ground ground(terrain, structures, model.support_radius);
-    Trial trial({std::move(model), std::move(ground), state_at_rest(points), {}, {}, {}}, watch);
+    Trial trial({std::move(model), std::move(ground), state_at_rest(points), {}, {}, {}}, watch, OnFault::stop,
+                Observed::yes);
     if (!trial.advance_to(spec.end)) return Error{trial.problem()};
     return trial.observer().impacts();
 }

@@ -55,7 +55,8 @@ Measured measure(const ImpactSpec& spec, double froude, const Setting& setting, 
     outputs.impact_filter_window = 0.2 * spec.depth / wave;
     outputs.sample_interval = 0.05 * stream / (speed + wave);
     outputs.map_cell = spec.depth;
-    Trial trial({std::move(model), std::move(ground), std::move(start), {}, {}, outputs}, watch, OnFault::note);
+    Trial trial({std::move(model), std::move(ground), std::move(start), {}, {}, outputs}, watch, OnFault::note,
+                Observed::yes);
     const observe::Observer& observer = trial.observer();
     // Until the stream's other end affects the wall, without the splash of the first fifth.
     const double end = stream / (speed + wave);
