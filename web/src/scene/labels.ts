@@ -36,7 +36,8 @@ export class Labels {
   set(labels: readonly Label[]): void {
     this.layer.replaceChildren();
     this.shown = [...labels].sort((a, b) => b.priority - a.priority).map((label) => {
-      const element = h("div", { class: `label ${label.kind}` }, h("span", {}, label.text));
+      // Hidden until place() has been called: without a place of its own it would lie in the view's corner.
+      const element = h("div", { class: `label off ${label.kind}` }, h("span", {}, label.text));
       if (label.colour) {
         element.style.setProperty("--mark", label.colour);
         element.style.setProperty("--mark-ink", inkOn(label.colour));
