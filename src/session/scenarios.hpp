@@ -111,6 +111,8 @@ class Scenarios {
     /// Error: the first one cannot be removed.
     [[nodiscard]] Status remove(int index);
 
+    /// Given by people; may be empty.
+    [[nodiscard]] const std::string& title(int index) const { return slots_[static_cast<std::size_t>(index)].title; }
     [[nodiscard]] nlohmann::json state(int index) const;
     [[nodiscard]] nlohmann::json setup(int index) const;
     /// The current frame with every `stride`-th particle.
