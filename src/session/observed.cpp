@@ -6,21 +6,19 @@
 
 #include "ensemble/predict.hpp"
 #include "messages/messages.hpp"
-#include "twin/answers.hpp"
+#include "twin/live_run.hpp"
 #include "twin/results.hpp"
-#include "twin/table_entry.hpp"
+#include "twin/setup.hpp"
 
 namespace talus::session {
 namespace {
 
-using nlohmann::json;
-
-/// `entries`: of the setup.
-messages::Observed observed_in(const scene::Scene& scene, const run::RunResult& result, const json& entries) {
+messages::Observed observed_in(const scene::Scene& scene, const run::RunResult& result,
+                               const std::vector<twin::TableSetup>& entries) {
     std::vector<std::string> ids;
     for (const std::string& section : twin::sections_of(twin::TableKind::observation)) {
-        for (const json& entry : entries) {
-            if (entry["section"] == section) ids.push_back(entry["id"]);
+        for (const twin::TableSetup& entry : entries) {
+            if (entry.body->section == section) ids.push_back(entry.id);
         }
     }
     const std::vector<ensemble::ObservedValue> observed = ensemble::observed_values(scene);
@@ -50,7 +48,7 @@ messages::Observed observed_in(const scene::Scene& scene, const run::RunResult& 
 
 Rest observed(Scenarios& all, int index, const Arguments& /*arguments*/) {
     const twin::Scenario& scenario = all.at(index);
-    return [outcome = twin::outcome_of(scenario), entries = twin::setup_json(scenario)["observations"]] {
+    return [outcome = twin::outcome_of(scenario), entries = scenario.run().setup().observations] {
         const auto& [scene, result] = outcome;
         return reply(observed_in(scene, result, entries));
     };

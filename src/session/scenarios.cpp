@@ -147,7 +147,7 @@ void Scenarios::tell_setup(int index) {
     json now = setup(index);
     if (now == slot.told_setup) return;
     slot.told_setup = now;
-    watcher_.setup(index, std::move(now));
+    watcher_.setup(index, std::move(now), slot.scenario->run().setup());
 }
 
 void Scenarios::tell_state(int index, Clock::time_point now) {

@@ -47,7 +47,7 @@ class Watcher {
     virtual ~Watcher() = default;
     virtual void frames(FrameSet set) = 0;
     virtual void state(int scenario, nlohmann::json state) = 0;
-    virtual void setup(int scenario, nlohmann::json setup) = 0;
+    virtual void setup(int scenario, nlohmann::json told, const twin::Setup& setup) = 0;
     virtual void done(int scenario, const std::string& by, const std::string& sentence) = 0;
     virtual void scenarios(std::vector<std::string> names) = 0;
     virtual void alerts(int scenario, RunAlerts alerts) = 0;
