@@ -11,16 +11,14 @@ namespace talus::serve {
 
 std::vector<messages::CalibratedObservation> Calibrations::listed(
     const std::vector<ensemble::ObservedValue>& observed) {
-    using Kind = ensemble::ObservedValue::Kind;
     std::vector<messages::CalibratedObservation> list;
     list.reserve(observed.size());
     for (const ensemble::ObservedValue& o : observed) {
-        const char* is = o.kind == Kind::equal ? "equal" : o.kind == Kind::at_least ? "at_least" : "below";
         list.push_back({.name = o.name,
                         .unit = o.unit,
                         .observed = o.value,
                         .uncertainty = o.uncertainty,
-                        .is = is,
+                        .is = o.is(),
                         .best = {},
                         .deviation = {}});
     }

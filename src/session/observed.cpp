@@ -27,7 +27,6 @@ messages::Observed observed_in(const scene::Scene& scene, const run::RunResult& 
     rows.reserve(observed.size());
     for (std::size_t k = 0; k < observed.size(); ++k) {
         const ensemble::ObservedValue& o = observed[k];
-        const bool is = o.kind == ensemble::ObservedValue::Kind::equal;
         const bool reached = std::isfinite(predicted[k]) && !(o.unreached < 0 && predicted[k] < 0);
         const double deviation = deviation_of(o, reached ? predicted[k] : o.unreached);
         rows.push_back({.id = k < ids.size() ? std::optional(ids[k]) : std::nullopt,
@@ -35,9 +34,7 @@ messages::Observed observed_in(const scene::Scene& scene, const run::RunResult& 
                         .unit = o.unit,
                         .observed = o.value,
                         .uncertainty = o.uncertainty,
-                        .is = is                                                  ? "equal"
-                              : o.kind == ensemble::ObservedValue::Kind::at_least ? "at_least"
-                                                                                  : "below",
+                        .is = o.is(),
                         .computed = reached ? std::optional(predicted[k]) : std::nullopt,
                         .deviation = deviation});
     }

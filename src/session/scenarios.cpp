@@ -100,7 +100,7 @@ json Scenarios::state(int index) const {
                           .steps_per_second = steps ? slot.rate.steps_per_second() : 0.0,
                           .preparing = {}};
     if (slot.ready()) state.run_state.status = slot.running ? "running" : "paused";
-    if (slot.job) state.preparing = {.what = slot.job->what, .share = slot.job->share.load()};
+    if (slot.job) state.preparing = messages::Preparation{.what = slot.job->what, .share = slot.job->share.load()};
     return twin::with_short_numbers(state);
 }
 
