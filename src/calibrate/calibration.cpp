@@ -17,12 +17,6 @@ namespace {
 using Json = nlohmann::ordered_json;
 using Clock = std::chrono::steady_clock;
 
-const char* kind_name(ensemble::ObservedValue::Kind kind) {
-    return kind == ensemble::ObservedValue::Kind::at_least ? "at_least"
-           : kind == ensemble::ObservedValue::Kind::below  ? "below"
-                                                           : "equal";
-}
-
 /// Runs of the scene at the places of a search.
 class SceneModel {
   public:
@@ -197,7 +191,7 @@ Json calibration_definition(const std::string& kind, const CalibrationPlan& plan
     definition["observed"] = Json::array();
     for (const ensemble::ObservedValue& o : observed) {
         definition["observed"].push_back(
-            {{"key", o.key}, {"is", kind_name(o.kind)}, {"value", o.value}, {"uncertainty", o.uncertainty}});
+            {{"key", o.key}, {"is", o.is()}, {"value", o.value}, {"uncertainty", o.uncertainty}});
     }
     return definition;
 }

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <array>
+#include <cstddef>
 #include <limits>
 #include <string>
 #include <vector>
@@ -61,6 +63,9 @@ struct ObservedValue {
     double value = 0, uncertainty = 0;  ///< of damage: the limit of pressure
     /// Damage says only on which side of the value the prediction should lie.
     enum class Kind { equal, at_least, below } kind = Kind::equal;
+    [[nodiscard]] const char* is() const {
+        return std::array{"equal", "at_least", "below"}[static_cast<std::size_t>(kind)];
+    }
     /// Substitute for the prediction of a run whose debris did not reach the place: front velocity and front chainage
     /// 0, arrival at the latest end of the run, run-up below the mark by the search radius.
     double unreached = 0;

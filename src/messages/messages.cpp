@@ -459,18 +459,57 @@ void to_json(json& to, const NewScenario& from) {
     put(to, "object", from.object);
 }
 
-void to_json(json& to, const Preparation& from) {
-    to = json::object();
-    put(to, "what", from.what);
-    put(to, "share", from.share);
-}
-
 void to_json(json& to, const RecordingExtent& from) {
     to = json::object();
     put(to, "first_s", from.first_s);
     put(to, "last_s", from.last_s);
     put(to, "frames", from.frames);
     put(to, "bytes", from.bytes);
+}
+
+void to_json(json& to, const RunState& from) {
+    to = json::object();
+    put(to, "status", from.status);
+    put(to, "message", from.message);
+    put(to, "time_s", from.time_s);
+    put(to, "end_time_s", from.end_time_s);
+    put(to, "expected_end_s", from.expected_end_s);
+    put(to, "wall_remaining_s", from.wall_remaining_s);
+    put(to, "step", from.step);
+    put(to, "particles", from.particles);
+    put(to, "volume_released_m3", from.volume_released_m3);
+    put(to, "volume_entrained_m3", from.volume_entrained_m3);
+    put(to, "pore_pressure", from.pore_pressure);
+    put(to, "volume_held_m3", from.volume_held_m3);
+    put(to, "volume_moving_m3", from.volume_moving_m3);
+    put(to, "volume_deposited_m3", from.volume_deposited_m3);
+    put(to, "volume_left_m3", from.volume_left_m3);
+    put(to, "front_chainage_m", from.front_chainage_m);
+    put(to, "front_velocity_mps", from.front_velocity_mps);
+    put(to, "largest_speed_mps", from.largest_speed_mps);
+    put(to, "peak_speed_mps", from.peak_speed_mps);
+    put(to, "mean_compression", from.mean_compression);
+    put(to, "max_compression", from.max_compression);
+    put(to, "overcompressed_share", from.overcompressed_share);
+    put(to, "too_compressed", from.too_compressed);
+    put(to, "verdict", from.verdict);
+    put(to, "recording", from.recording);
+    put_if_there(to, "hash", from.hash);
+}
+
+void to_json(json& to, const Preparation& from) {
+    to = json::object();
+    put(to, "what", from.what);
+    put(to, "share", from.share);
+}
+
+void to_json(json& to, const State& from) {
+    to = from.run_state;
+    put(to, "scenario", from.scenario);
+    put(to, "speed_factor", from.speed_factor);
+    put(to, "real_time_factor", from.real_time_factor);
+    put(to, "steps_per_second", from.steps_per_second);
+    put(to, "preparing", from.preparing);
 }
 
 void to_json(json& to, const ChangeOnTheWay& from) {
@@ -717,12 +756,6 @@ void to_json(json& to, const FlowExport& from) {
 void to_json(json& to, const NoStartPage& from) {
     to = json::object();
     put(to, "available", from.available);
-}
-
-void to_json(json& to, const Opening& from) {
-    to = json::object();
-    put(to, "what", from.what);
-    put(to, "share", from.share);
 }
 
 void to_json(json& to, const UploadLimits& from) {

@@ -434,12 +434,6 @@ struct NewScenario {
 };
 void to_json(nlohmann::json& to, const NewScenario& from);
 
-struct Preparation {
-    std::string what;
-    double share;
-};
-void to_json(nlohmann::json& to, const Preparation& from);
-
 struct RecordingExtent {
     std::optional<double> first_s;
     std::optional<double> last_s;
@@ -447,6 +441,52 @@ struct RecordingExtent {
     Integer bytes;
 };
 void to_json(nlohmann::json& to, const RecordingExtent& from);
+
+struct RunState {
+    std::string status;
+    std::string message;
+    double time_s;
+    double end_time_s;
+    std::optional<double> expected_end_s;
+    std::optional<double> wall_remaining_s;
+    Integer step;
+    Integer particles;
+    double volume_released_m3;
+    double volume_entrained_m3;
+    bool pore_pressure;
+    double volume_held_m3;
+    double volume_moving_m3;
+    double volume_deposited_m3;
+    double volume_left_m3;
+    std::optional<double> front_chainage_m;
+    std::optional<double> front_velocity_mps;
+    std::optional<double> largest_speed_mps;
+    std::optional<double> peak_speed_mps;
+    std::optional<double> mean_compression;
+    std::optional<double> max_compression;
+    std::optional<double> overcompressed_share;
+    std::optional<bool> too_compressed;
+    nlohmann::json verdict;
+    RecordingExtent recording;
+    std::optional<std::string> hash{};
+};
+void to_json(nlohmann::json& to, const RunState& from);
+
+struct Preparation {
+    std::string what;
+    double share;
+};
+void to_json(nlohmann::json& to, const Preparation& from);
+
+struct State {
+    RunState run_state;
+    std::string scenario;
+    std::optional<double> speed_factor;
+    double real_time_factor;
+    double steps_per_second;
+    std::optional<Preparation> preparing;
+};
+void to_json(nlohmann::json& to, const State& from);
 
 struct ChangeOnTheWay {
     double time_s;
@@ -696,12 +736,6 @@ struct NoStartPage {
 };
 void to_json(nlohmann::json& to, const NoStartPage& from);
 
-struct Opening {
-    std::string what;
-    double share;
-};
-void to_json(nlohmann::json& to, const Opening& from);
-
 struct UploadLimits {
     Integer bytes;
     Integer files;
@@ -752,7 +786,7 @@ struct StartPage {
     };
     bool available;
     std::optional<Open> open;
-    std::optional<Opening> opening;
+    std::optional<Preparation> opening;
     std::optional<std::string> error;
     Integer count;
     std::vector<std::string> notes;

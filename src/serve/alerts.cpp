@@ -23,10 +23,10 @@ std::string person_of(const std::string& trigger) {
 }  // namespace
 
 Alerts::Alerts(Session& session, std::shared_ptr<const scene::Scene> scene, AlertSettings settings)
-    : session_(session), scene_(std::move(scene)), settings_(std::move(settings)) {
-    for (const twin::TableEntry& entry : entries_of(scene_->spec, twin::TableKind::trigger)) {
-        triggers_.push_back({{"name", entry.name()}, {"values", table_values_json(entry)}});
-    }
+    : session_(session),
+      scene_(std::move(scene)),
+      settings_(std::move(settings)),
+      triggers_(entries_of(scene_->spec, twin::TableKind::trigger)) {
     // A broker is for scenes whose file has something for it: nobody in the page makes the server connect to it.
     if (scene_->spec.triggers.empty() && scene_->spec.alarms.empty()) settings_.mqtt.reset();
     session_.on_alerts([this](int scenario, const RunAlerts& alerts) { follow(scenario, alerts); });
@@ -62,9 +62,9 @@ void Alerts::reserve() {
     session_.loop().post([](Scenarios& all) { all.reserve_for_triggers(); });
 }
 
-void Alerts::follow_triggers(const json& triggers) {
+void Alerts::follow_triggers(std::vector<twin::TableEntry> triggers) {
     if (triggers == triggers_) return;
-    triggers_ = triggers;
+    triggers_ = std::move(triggers);
     reserve();
     tell();
 }
@@ -114,17 +114,18 @@ void Alerts::take(const std::string& text, const std::string& source, const Resp
     auto message = read_trigger_message(text, now);
     if (!message) return refuse(400, message.error().message, source, respond);
     Job job{std::move(*message), source, time_text(now)};
-    const auto answered = [this, source, respond, job](int status, const json& answer) {
-        session_.post([this, source, respond, job, status, answer] {
-            if (status != 200) return refuse(status, answer["error"], source, respond);
-            const json& scenario = answer["scenario"];
-            if (scenario.is_string() && job.message.discharge()) {
-                told_[scenario.get<std::string>().front() - 'A'].reading = {.discharge_m3ps = *job.message.discharge(),
-                                                                            .received_at = job.received_at};
+    const Answered answered = [this, source, respond, job](const auto& outcome) {
+        session_.post([this, source, respond, job, outcome] {
+            if (const auto* no = std::get_if<Refused>(&outcome))
+                return refuse(no->status, no->sentence, source, respond);
+            const auto& answer = std::get<messages::TriggerAnswer>(outcome);
+            if (answer.scenario && job.message.discharge()) {
+                told_[answer.scenario->front() - 'A'].reading = {.discharge_m3ps = *job.message.discharge(),
+                                                                 .received_at = job.received_at};
             }
             // Values of a gauge come too often for a list.
-            if (answer["started"] == true) {
-                note(fmt::format("scenario {}: {}", scenario.get<std::string>(), answer["done"].get<std::string>()));
+            if (answer.started) {
+                note(fmt::format("scenario {}: {}", *answer.scenario, answer.done));
             } else {
                 tell();
             }
@@ -140,17 +141,16 @@ void Alerts::decide(Scenarios& all, Runs& runs, const Job& job, const Answered& 
         return trigger.name == job.message.trigger;
     });
     if (found != triggers.end()) return decide(all, runs, job, *found, answered);
-    answered(400, messages::Refusal{
-                      .error = fmt::format("trigger = \"{}\": there is no such trigger", job.message.trigger)});
+    answered(Refused{400, fmt::format("trigger = \"{}\": there is no such trigger", job.message.trigger)});
 }
 
 void Alerts::decide(Scenarios& all, Runs& runs, const Job& job, const params::TriggerSpec& trigger,
                     const Answered& answered) {
     Run& run = runs[job.message.trigger];
     const auto index = all.run_of(job.message.trigger);
-    const auto refused = [&](const std::string& sentence) { answered(409, messages::Refusal{.error = sentence}); };
+    const auto refused = [&](const std::string& sentence) { answered(Refused{409, sentence}); };
     const auto idle = [&](const std::string& sentence) {
-        answered(200, messages::TriggerAnswer{.done = sentence, .scenario = {}, .started = false});
+        answered(messages::TriggerAnswer{.done = sentence, .scenario = {}, .started = false});
     };
     if (run.starting) return refused(fmt::format("the run of trigger \"{}\" is being prepared", job.message.trigger));
     if (index) {
@@ -177,7 +177,7 @@ void Alerts::decide(Scenarios& all, Runs& runs, const Job& job, const params::Tr
 
 void Alerts::start(Scenarios& all, Run& run, const Job& job, const Answered& answered) {
     if (!all.has_place(job.message.trigger)) {
-        return answered(409, messages::Refusal{.error = "every place for a scenario is taken; end one first"});
+        return answered(Refused{409, "every place for a scenario is taken; end one first"});
     }
     json action = {{"action", "trigger"},
                    {"trigger", job.message.trigger},
@@ -188,10 +188,10 @@ void Alerts::start(Scenarios& all, Run& run, const Job& job, const Answered& ans
     run.starting = true;
     all.start_by_trigger(action, person_of(job.message.trigger), [&run, job, answered](const Result<Copied>& made) {
         run.starting = false;
-        if (!made) return answered(400, messages::Refusal{.error = made.error().message});
+        if (!made) return answered(Refused{400, made.error().message});
         run.began = job.message.time;
         run.armed = false;
-        answered(200, messages::TriggerAnswer{.done = made->done.sentence, .scenario = made->name, .started = true});
+        answered(messages::TriggerAnswer{.done = made->done.sentence, .scenario = made->name, .started = true});
     });
 }
 
@@ -201,9 +201,9 @@ void Alerts::feed(Scenarios& all, int index, const Run& run, const Job& job, con
                          {"source", job.source}, {"received_at", job.received_at},
                          {"time_s", time},       {"discharge_m3ps", job.message.values["discharge_m3ps"]}};
     all.follow_gauge(index, action, person_of(job.message.trigger), [index, answered](const Result<twin::Done>& done) {
-        if (!done) return answered(400, messages::Refusal{.error = done.error().message});
-        answered(200, messages::TriggerAnswer{
-                          .done = done->sentence, .scenario = Scenarios::name_of(index), .started = false});
+        if (!done) return answered(Refused{400, done.error().message});
+        answered(
+            messages::TriggerAnswer{.done = done->sentence, .scenario = Scenarios::name_of(index), .started = false});
     });
 }
 
@@ -306,15 +306,16 @@ messages::Alerts Alerts::describe() const {
                          .alarms = {},
                          .notes = {}};
     if (settings_.mqtt) all.listening.mqtt = mqtt_state_;
-    for (const json& trigger : triggers_) {
+    for (const twin::TableEntry& trigger : triggers_) {
         json takes = json::object();
         const std::pair<const char*, const char*> limits[] = {{"volume_m3", "volume_limit_m3"},
                                                               {"pore_pressure_ratio", "pore_pressure_ratio_limit"},
                                                               {"discharge_m3ps", "discharge_limit_m3ps"}};
         for (const auto& [key, limit] : limits) {
-            if (const json& most = trigger["values"][limit]; !most.is_null()) takes[key] = most;
+            const auto most = trigger.values.find(limit);
+            if (most != trigger.values.end()) takes[key] = std::get<double>(most->second);
         }
-        all.triggers.push_back({.name = trigger["name"], .limits = std::move(takes)});
+        all.triggers.push_back({.name = trigger.name(), .limits = std::move(takes)});
     }
     for (const auto& [scenario, told] : told_) {
         if (!told.alerts.trigger.is_null()) {

@@ -9,6 +9,7 @@
 #include <optional>
 #include <string>
 #include <utility>
+#include <variant>
 #include <vector>
 
 #include <nlohmann/json.hpp>
@@ -50,7 +51,7 @@ class Alerts {
     /// 400 for the message, 409 for what is not possible now, 429 for too many.
     void take(const std::string& text, const std::string& source, const Respond& respond);
     /// The triggers of the first scenario, as its setup has them.
-    void follow_triggers(const nlohmann::json& triggers);
+    void follow_triggers(std::vector<twin::TableEntry> triggers);
     /// As `GET /api/alerts`.
     [[nodiscard]] messages::Alerts describe() const;
 
@@ -73,7 +74,11 @@ class Alerts {
         TriggerMessage message;
         std::string source, received_at;
     };
-    using Answered = std::function<void(int status, const nlohmann::json& answer)>;
+    struct Refused {
+        int status;
+        std::string sentence;
+    };
+    using Answered = std::function<void(const std::variant<messages::TriggerAnswer, Refused>& answer)>;
 
     static void decide(Scenarios& all, Runs& runs, const Job& job, const Answered& answered);
     static void decide(Scenarios& all, Runs& runs, const Job& job, const params::TriggerSpec& trigger,
@@ -97,10 +102,10 @@ class Alerts {
     AlertSettings settings_;
     std::shared_ptr<Runs> runs_ = std::make_shared<Runs>();  // for the loop's thread alone
 
-    nlohmann::json triggers_ = nlohmann::json::array();  // of the first scenario, as its setup has them
-    bool reserved_ = false;                              // a place for their runs
-    std::map<int, Told> told_;                           // by scenario
-    std::vector<bool> behind_;                           // receivers, which somebody has been told of
+    std::vector<twin::TableEntry> triggers_;  // of the first scenario
+    bool reserved_ = false;                   // a place for their runs
+    std::map<int, Told> told_;                // by scenario
+    std::vector<bool> behind_;                // receivers, which somebody has been told of
     std::uint64_t generations_ = 0;
     std::deque<messages::AlertNote> notes_;  // the newest last
     std::string mqtt_state_;

@@ -2,15 +2,12 @@
 #include <memory>
 #include <utility>
 
-#include <fmt/format.h>
-
 #include "geo/orthophoto.hpp"
 #include "messages/messages.hpp"
 #include "serve/api.hpp"
 #include "session/json_text.hpp"
 #include "session/thinned.hpp"
 #include "twin/answers.hpp"
-#include "twin/json_keys.hpp"
 
 namespace talus::serve {
 namespace {
@@ -92,35 +89,24 @@ void end_scenario(Session& session, const Request& request, const Respond& respo
 
 void control(Session& session, const Request& request, const Respond& respond) {
     const auto wanted = parse_json(request.body);
-    if (!wanted) {
-        respond(error_response(400, wanted.error().message));
+    const auto what = wanted ? session::read_control(*wanted) : Result<std::string>(wanted.error());
+    if (!what) {
+        respond(error_response(400, what.error().message));
         return;
     }
-    if (const Status known = wanted->is_object() ? twin::check_keys(*wanted, {"do", "secret"}) : Status(); !known) {
-        respond(error_response(400, known.error().message));
-        return;
-    }
-    const auto text_of = [&](const char* key) -> std::string {
-        const auto found = wanted->is_object() ? wanted->find(key) : wanted->end();
-        return found != wanted->end() && found->is_string() ? found->get<std::string>() : "";
-    };
-    const std::string what = text_of("do"), secret = text_of("secret");
-    if (what != "request" && what != "release" && what != "grant" && what != "decline") {
-        respond(error_response(400, fmt::format("do = \"{}\"; it is request, release, grant or decline", what)));
-        return;
-    }
+    const std::string secret = text_at(*wanted, "secret");
     const Person* who = session.people().whose(secret.empty() ? request.secret : secret);
     if (who == nullptr) {
         respond(error_response(409, nobody_in_session));
         return;
     }
-    const Status changed = session.people().control(what, who->id, Clock::now());
+    const Status changed = session.people().control(*what, who->id, Clock::now());
     if (!changed) {
         respond(error_response(409, changed.error().message));
         return;
     }
     session.people_changed();
-    respond(json_response(200, messages::Done{.done = what, .created = {}}));
+    respond(json_response(200, messages::Done{.done = *what, .created = {}}));
 }
 
 }  // namespace

@@ -16,9 +16,7 @@ namespace {
 constexpr std::size_t longest_pem = 200'000;
 
 Result<ShareWanted> read_wanted(const std::string& body) {
-    TALUS_ASSIGN(const auto wanted, parse_json(body));
-    if (!wanted.is_object()) return Error{"the body is an object with address"};
-    TALUS_TRY(twin::check_keys(wanted, {"address", "port", "name", "certificate", "key"}));
+    TALUS_ASSIGN(const auto wanted, read_object(body, {"address", "port", "name", "certificate", "key"}));
     ShareWanted share;
     TALUS_ASSIGN(const auto address, twin::read_text(wanted, "address", 100));
     TALUS_ASSIGN(const auto port, twin::read_number(wanted, "port", {0, 65535, true, true}, ""));

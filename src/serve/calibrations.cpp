@@ -99,6 +99,8 @@ Calibrations::Calibrations(Executor& executor, std::shared_ptr<const scene::Scen
               .map = {},
               .best = {},
               .result = {}},
+      followed_(entries_of(scene_->spec, twin::TableKind::observation)),
+      taken_(followed_),
       lane_(executor, "calibration", Priority::idle) {}
 
 Calibrations::~Calibrations() {

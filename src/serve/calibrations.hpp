@@ -18,6 +18,7 @@
 #include "serve/executor.hpp"
 #include "serve/long_task.hpp"
 #include "serve/message.hpp"
+#include "twin/table_entry.hpp"
 
 namespace talus::serve {
 
@@ -43,7 +44,7 @@ class Calibrations {
     Calibrations& operator=(const Calibrations&) = delete;
 
     /// The observations of the first scenario, as its setup has them: the next calibration is against these.
-    void follow(const nlohmann::json& observations);
+    void follow(std::vector<twin::TableEntry> observations);
     /// Starts one according to the body of `POST /api/calibration`, and answers once it is known whether it can run.
     /// Errors (400, 409) name key, value and what is allowed.
     void start(const nlohmann::json& wanted, const std::string& by, const Respond& respond);
@@ -92,10 +93,10 @@ class Calibrations {
     std::vector<ensemble::ObservedValue> observed_;
     run::SceneSource source_;  // of the present calibration
     std::function<void(nlohmann::json)> tell_;
-    mutable std::mutex mutex_;            // guards the following members
-    LongTask calibration_;                // the current or the last one
-    messages::CalibrationStatus status_;  // what describe() gives beside that
-    nlohmann::json followed_, taken_;     // observations of the setup; null: those of the scene
+    mutable std::mutex mutex_;                        // guards the following members
+    LongTask calibration_;                            // the current or the last one
+    messages::CalibrationStatus status_;              // what describe() gives beside that
+    std::vector<twin::TableEntry> followed_, taken_;  // observations of the setup; at first those of the scene
     bool busy_ = false, closed_ = false;
     Clock::time_point told_{};
     Lane lane_;

@@ -1,5 +1,4 @@
 // What calibrations fit: the observations of the first scenario.
-#include <algorithm>
 #include <filesystem>
 #include <utility>
 
@@ -7,31 +6,19 @@
 #include "params/scene_text.hpp"
 #include "products/text_file.hpp"
 #include "serve/calibrations.hpp"
-#include "twin/table_entry.hpp"
 
 namespace talus::serve {
-namespace {
-
-using nlohmann::json;
-
-bool same_entries(const std::vector<twin::TableEntry>& a, const std::vector<twin::TableEntry>& b) {
-    return std::equal(a.begin(), a.end(), b.begin(), b.end(), twin::same_values);
-}
-
-}  // namespace
 
 std::vector<messages::CalibratedObservation> Calibrations::listed(
     const std::vector<ensemble::ObservedValue>& observed) {
-    using Kind = ensemble::ObservedValue::Kind;
     std::vector<messages::CalibratedObservation> list;
     list.reserve(observed.size());
     for (const ensemble::ObservedValue& o : observed) {
-        const char* is = o.kind == Kind::equal ? "equal" : o.kind == Kind::at_least ? "at_least" : "below";
         list.push_back({.name = o.name,
                         .unit = o.unit,
                         .observed = o.value,
                         .uncertainty = o.uncertainty,
-                        .is = is,
+                        .is = o.is(),
                         .best = {},
                         .deviation = {}});
     }
@@ -46,24 +33,19 @@ std::optional<std::string> Calibrations::why_none(const std::vector<ensemble::Ob
            "file.";
 }
 
-void Calibrations::follow(const json& observations) {
+void Calibrations::follow(std::vector<twin::TableEntry> observations) {
     const std::lock_guard lock(mutex_);
-    followed_ = observations;
+    followed_ = std::move(observations);
     if (!busy_ && !closed_) take_observations();
 }
 
 void Calibrations::take_observations() {
-    if (followed_ == taken_ || followed_.is_null()) return;
+    if (followed_ == taken_) return;
     taken_ = followed_;
-    std::vector<twin::TableEntry> entries;
-    for (const json& each : taken_) {
-        if (auto entry = twin::read_table_entry(each, twin::TableKind::observation))
-            entries.push_back(std::move(*entry));
-    }
     scene_ = opened_;
-    if (!same_entries(entries, entries_of(opened_->spec, twin::TableKind::observation))) {
+    if (taken_ != entries_of(opened_->spec, twin::TableKind::observation)) {
         auto scene = std::make_shared<scene::Scene>(*opened_);
-        put_entries(scene->spec, twin::TableKind::observation, entries);
+        put_entries(scene->spec, twin::TableKind::observation, taken_);
         scene_ = std::move(scene);
     }
     observed_ = ensemble::observed_values(*scene_);

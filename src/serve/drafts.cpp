@@ -39,19 +39,12 @@ bool known_role(const std::string& role) {
     return std::find(Draft::roles.begin(), Draft::roles.end(), role) != Draft::roles.end();
 }
 
-Result<json> read_object(const Request& request, std::initializer_list<std::string_view> keys) {
-    TALUS_ASSIGN(auto body, parse_json(request.body));
-    if (!body.is_object()) return Error{"the body is an object"};
-    TALUS_TRY(twin::check_keys(body, keys));
-    return Result<json>(std::move(body));
-}
-
 params::Range any_number() {
     return {-1e12, 1e12, true, true};
 }
 
 Result<geo::Mending> read_mending(const Request& request) {
-    TALUS_ASSIGN(const json body, read_object(request, {"epsg", "local", "metric", "metres_per_unit", "nodata"}));
+    TALUS_ASSIGN(const json body, read_object(request.body, {"epsg", "local", "metric", "metres_per_unit", "nodata"}));
     geo::Mending mending;
     TALUS_ASSIGN(const auto epsg, twin::read_number(body, "epsg", {1024, 999999, true, true}, ""));
     if (epsg && *epsg != static_cast<int>(*epsg)) return Error{fmt::format("epsg = {}; it is a whole number", *epsg)};
@@ -282,7 +275,7 @@ void Drafts::relief(const std::string& id, const Respond& respond) {
 }
 
 void Drafts::make(const Request& request, const Respond& respond) {
-    const auto body = read_object(request, {"title", "thickness_m", "volume_m3", "scar", "check"});
+    const auto body = read_object(request.body, {"title", "thickness_m", "volume_m3", "scar", "check"});
     if (!body) return respond(problem(body.error().message));
     auto wanted = read_wanted(*body);
     if (!wanted) return respond(problem(wanted.error().message));

@@ -77,9 +77,7 @@ void FlowExports::offer(const std::string& scenario, std::optional<double> inter
 }
 
 Result<FlowExports::Wanted> FlowExports::read(const std::string& body) {
-    TALUS_ASSIGN(const json wanted, parse_json(body));
-    if (!wanted.is_object()) return Error{"the body is an object with formats"};
-    TALUS_TRY(twin::check_keys(wanted, {"formats", "interval_s"}));
+    TALUS_ASSIGN(const json wanted, read_object(body, {"formats", "interval_s"}));
     Wanted result;
     const auto formats = wanted.find("formats");
     if (formats == wanted.end() || !formats->is_array()) return Error{"formats: is a list of names"};

@@ -28,11 +28,6 @@ namespace fs = std::filesystem;
 constexpr std::size_t recent_count = 12, longest_file_name = 60;
 constexpr std::uintmax_t longest_list = 1'000'000;
 
-std::string text_or_none(const json& object, const char* key) {
-    const auto found = object.is_object() ? object.find(key) : object.end();
-    return object.is_object() && found != object.end() && found->is_string() ? found->get<std::string>() : "";
-}
-
 json read_json(const fs::path& file, std::uintmax_t longest) {
     const auto text = read_whole(file, longest);
     if (!text) return {};
@@ -130,9 +125,9 @@ std::vector<KnownScene> Library::scenes() const {
     const std::string own = (scenes_folder() / "").string();
     for (const json& entry : recent.is_array() ? recent : json::array()) {
         KnownScene scene;
-        scene.file = text_or_none(entry, "file");
-        scene.title = text_or_none(entry, "title");
-        scene.opened_at = text_or_none(entry, "opened_at");
+        scene.file = session::text_at(entry, "file");
+        scene.title = session::text_at(entry, "title");
+        scene.opened_at = session::text_at(entry, "opened_at");
         if (scene.file.empty()) continue;
         scene.id = id_of(scene.file);
         scene.missing = !fs::is_regular_file(scene.file, error);
@@ -169,9 +164,9 @@ std::vector<SavedSession> Library::sessions() const {
         SavedSession one;
         one.id = file.stem().string();
         one.file = file;
-        one.name = text_or_none(content, "name");
-        one.title = text_or_none(content, "title");
-        one.saved_at = text_or_none(content, "saved_at");
+        one.name = session::text_at(content, "name");
+        one.title = session::text_at(content, "title");
+        one.saved_at = session::text_at(content, "saved_at");
         const auto list = content.find("scenarios");
         one.scenarios = list != content.end() && list->is_array() ? static_cast<int>(list->size()) : 0;
         saved.push_back(std::move(one));
@@ -186,7 +181,7 @@ Status Library::remember(const fs::path& file, const std::string& title) const {
     json list = json::array({{{"file", whole.string()}, {"title", title}, {"opened_at", utc_now()}}});
     const json before = read_json(folder_ / "recent.json", longest_list);
     for (const json& entry : before.is_array() ? before : json::array()) {
-        if (list.size() < recent_count && text_or_none(entry, "file") != whole.string()) list.push_back(entry);
+        if (list.size() < recent_count && session::text_at(entry, "file") != whole.string()) list.push_back(entry);
     }
     return write_whole(folder_ / "recent.json", session::to_text(list) + "\n");
 }
@@ -195,7 +190,7 @@ Status Library::forget(const std::string& id) const {
     json list = json::array();
     const json before = read_json(folder_ / "recent.json", longest_list);
     for (const json& entry : before.is_array() ? before : json::array()) {
-        if (id_of(text_or_none(entry, "file")) != id) list.push_back(entry);
+        if (id_of(session::text_at(entry, "file")) != id) list.push_back(entry);
     }
     if (!before.is_array() || list.size() == before.size()) return Error{"this scene is not among the recent ones"};
     return write_whole(folder_ / "recent.json", session::to_text(list) + "\n");

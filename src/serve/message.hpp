@@ -18,8 +18,10 @@ using session::Arguments;
 using session::Bytes;
 using session::may;
 using session::parse_json;
+using session::read_object;
 using session::Role;
 using session::role_name;
+using session::text_at;
 using session::tidy_name;
 using session::to_text;
 

@@ -7,6 +7,7 @@
 #include "serve/option_scenarios.hpp"
 #include "serve/recorder.hpp"
 #include "serve/server.hpp"
+#include "twin/live_run.hpp"
 
 namespace talus::serve {
 
@@ -47,15 +48,15 @@ Result<OpenSessionPtr> OpenSession::open(const Thread& thread, Executor& executo
     // On the server's thread, which may be another one: it follows setups from when all of this is open. The task after
     // it sends the first one again.
     made->session.post([raw = made.get()] {
-        raw->session.on_first_setup([raw](const nlohmann::json& setup) {
-            raw->alerts.follow_triggers(setup["triggers"]);
-            raw->calibrations.follow(setup["observations"]);
+        raw->session.on_first_setup([raw](const twin::Setup& setup) {
+            raw->alerts.follow_triggers(bodies_of(setup.triggers));
+            raw->calibrations.follow(bodies_of(setup.observations));
         });
     });
     made->session.loop().post(
         [shared, raw = made.get(), run = options.run, options = std::move(options_of_scene)](Scenarios& all) {
             for (OpeningScenario& one : *shared) all.put(one.index, std::move(one.scenario), one.title);
-            raw->session.setup(0, all.setup(0));
+            raw->session.setup(0, all.setup(0), all.at(0).run().setup());
             offer_options(all, options);
             if (run) all.act(0, {{"action", "run"}}, "", [](const Result<twin::Done>&) {});
         });

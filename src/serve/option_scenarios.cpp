@@ -10,18 +10,13 @@
 #include "core/result.hpp"
 #include "params/fields.hpp"
 #include "terrain/buildings.hpp"
+#include "twin/json_keys.hpp"
 #include "twin/section_values.hpp"
 
 namespace talus::serve {
 namespace {
 
 using nlohmann::json;
-
-json points_json(const std::vector<PlanPoint>& points) {
-    json list = json::array();
-    for (const PlanPoint& p : points) list.push_back({p.x, p.y});
-    return list;
-}
 
 /// Without keys that are not given: null would remove them.
 json given(json values) {
@@ -49,7 +44,7 @@ void add_barriers(const scene::Scene& scene, const scene::Scene& with, std::vect
         json action = given(twin::values_json(*barrier.barrier));
         action["action"] = "put_barrier";
         action["name"] = barrier.name;
-        action["line"] = points_json(barrier.barrier->line);
+        action["line"] = twin::to_json(barrier.barrier->line);
         action["openings"] = twin::list_json(barrier.barrier->openings);
         actions.push_back(std::move(action));
     }
@@ -65,7 +60,7 @@ bool add_zones(const scene::Scene& scene, const scene::Scene& with, std::vector<
         json action = given(twin::values_json(zone.spec));
         action["action"] = "put_zone";
         action["name"] = zone.spec.name;
-        action["polygon"] = points_json(zone.outline.front().outer);
+        action["polygon"] = twin::to_json(zone.outline.front().outer);
         actions.push_back(std::move(action));
     }
     return true;

@@ -46,8 +46,7 @@ bool is_picture(const std::string& type, std::string_view bytes) {
 }
 
 std::string saved_text(const json& object, const char* key, std::size_t longest) {
-    const auto found = object.find(key);
-    return found != object.end() && found->is_string() ? tidy_name(found->get<std::string>(), longest) : "";
+    return tidy_name(text_at(object, key), longest);
 }
 
 double saved_number(const json& object, const char* key, double otherwise) {

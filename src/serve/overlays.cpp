@@ -291,15 +291,12 @@ void Overlays::change(const Request& request, const Respond& respond) {
         const auto overlay = find(request.parameters.at("id"));
         if (overlay == list_.end())
             return respond(error_response(404, "there is no such layer; it may have been removed"));
-        const auto wanted = parse_json(request.body);
         const Status changed = [&]() -> Status {
-            if (!wanted) return wanted.error();
-            if (!wanted->is_object()) return Error{"the body is an object"};
-            TALUS_TRY(twin::check_keys(*wanted, {"name", "visible", "opacity", "colour"}));
+            TALUS_ASSIGN(const json wanted, read_object(request.body, {"name", "visible", "opacity", "colour"}));
             Overlay made = *overlay;
-            TALUS_ASSIGN(const auto name, twin::read_text(*wanted, "name", longest_layer_name));
-            TALUS_ASSIGN(const auto opacity, twin::read_number(*wanted, "opacity", {0, 1, true, true}, ""));
-            TALUS_ASSIGN(const auto colour, twin::read_text(*wanted, "colour", longest_layer_name));
+            TALUS_ASSIGN(const auto name, twin::read_text(wanted, "name", longest_layer_name));
+            TALUS_ASSIGN(const auto opacity, twin::read_number(wanted, "opacity", {0, 1, true, true}, ""));
+            TALUS_ASSIGN(const auto colour, twin::read_text(wanted, "colour", longest_layer_name));
             if (name) made.name = tidy_name(*name, longest_layer_name);
             if (name && made.name.empty()) {
                 return Error{fmt::format("name = {}: must have characters that can be seen", twin::shown(*name))};
@@ -307,7 +304,7 @@ void Overlays::change(const Request& request, const Respond& respond) {
             made.opacity = opacity.value_or(made.opacity);
             if (colour) made.colour = geo::colour_of(*colour);
             if (made.colour.empty()) return Error{fmt::format("colour = {}: must be as #1f77b4", *colour)};
-            if (const auto visible = wanted->find("visible"); visible != wanted->end()) {
+            if (const auto visible = wanted.find("visible"); visible != wanted.end()) {
                 if (!visible->is_boolean()) return Error{"visible: must be true or false"};
                 made.visible = visible->get<bool>();
             }

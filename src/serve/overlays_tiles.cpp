@@ -9,7 +9,6 @@
 #include "serve/api.hpp"
 #include "serve/overlays.hpp"
 #include "session/json_text.hpp"
-#include "twin/json_keys.hpp"
 
 namespace talus::serve {
 namespace {
@@ -19,9 +18,7 @@ using nlohmann::json;
 constexpr int grid_steps = 32;  // of the terrain, between places whose longitude and latitude are told
 
 Result<std::string> wanted_address(const std::string& body) {
-    TALUS_ASSIGN(const json wanted, parse_json(body));
-    if (!wanted.is_object()) return Error{"the body is an object"};
-    TALUS_TRY(twin::check_keys(wanted, {"address"}));
+    TALUS_ASSIGN(const json wanted, read_object(body, {"address"}));
     const auto address = wanted.find("address");
     if (address == wanted.end() || !address->is_string()) return Error{"address: missing; it must be a text"};
     TALUS_TRY(check_tile_address(address->get<std::string>()));

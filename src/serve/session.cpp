@@ -122,13 +122,13 @@ void Session::state(int scenario, json state) {
     keep(Kept::state, scenario, std::move(state));
 }
 
-void Session::setup(int scenario, json setup) {
+void Session::setup(int scenario, json told, const twin::Setup& setup) {
     if (scenario == 0) {
         thread_.post([this, setup] {
             if (on_first_setup_) on_first_setup_(setup);
         });
     }
-    keep(Kept::setup, scenario, std::move(setup));
+    keep(Kept::setup, scenario, std::move(told));
     setups_changed_();
 }
 

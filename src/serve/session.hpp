@@ -72,14 +72,14 @@ class Session final : public Watcher {
     void on_alerts(std::function<void(int scenario, const RunAlerts&)> listener) { on_alerts_ = std::move(listener); }
     /// Who is told, on the server's thread, of every setup of the first scenario: what is not of one run is as it has
     /// it.
-    void on_first_setup(std::function<void(const nlohmann::json&)> listener) { on_first_setup_ = std::move(listener); }
+    void on_first_setup(std::function<void(const twin::Setup&)> listener) { on_first_setup_ = std::move(listener); }
     /// For the server's thread, from any other.
     void post(std::function<void()> task) { thread_.post(std::move(task)); }
 
     // Watcher, from the loop's thread.
     void frames(FrameSet set) override;
     void state(int scenario, nlohmann::json state) override;
-    void setup(int scenario, nlohmann::json setup) override;
+    void setup(int scenario, nlohmann::json told, const twin::Setup& setup) override;
     void done(int scenario, const std::string& by, const std::string& sentence) override;
     void scenarios(std::vector<std::string> names) override;
     void alerts(int scenario, RunAlerts alerts) override;
@@ -96,7 +96,7 @@ class Session final : public Watcher {
     Tokens tokens_;
     std::unique_ptr<session::Room> room_;
     std::function<void(int, const RunAlerts&)> on_alerts_;
-    std::function<void(const nlohmann::json&)> on_first_setup_;
+    std::function<void(const twin::Setup&)> on_first_setup_;
     std::function<void()> setups_changed_ = [] {};
     bool ticking_ = false;
 

@@ -48,9 +48,7 @@ json write_session(Scenarios& all, const std::string& name, const std::string& t
     scenarios.reserve(names.size());
     for (const std::string& letter : names) {
         const int index = *all.find(letter);
-        scenarios.push_back({.name = letter,
-                             .title = all.setup(index).value("name", ""),
-                             .journal = twin::journal_json(all.at(index))});
+        scenarios.push_back({.name = letter, .title = all.title(index), .journal = twin::journal_json(all.at(index))});
     }
     json session = messages::SessionFile{.talus_session = session_version,
                                          .name = name,

@@ -12,7 +12,6 @@
 #include "scene/bundle.hpp"
 #include "serve/api.hpp"
 #include "session/json_text.hpp"
-#include "twin/json_keys.hpp"
 
 namespace talus::serve {
 namespace {
@@ -110,16 +109,10 @@ void Start::describe(Role role, const Respond& respond) {
 }
 
 void Start::open(const Request& request, const Respond& respond) {
-    const auto wanted = parse_json(request.body);
-    const auto text_of = [&](const char* key) -> std::string {
-        const auto found = wanted->find(key);
-        return found != wanted->end() && found->is_string() ? found->get<std::string>() : "";
-    };
-    const Status keys = !wanted               ? Status(wanted.error())
-                        : wanted->is_object() ? twin::check_keys(*wanted, {"scene", "session", "ensemble", "replace"})
-                                              : Status(Error{"the body is an object with scene, session or ensemble"});
-    if (!keys) return respond(error_response(400, keys.error().message));
-    const std::string scene = text_of("scene"), session = text_of("session"), ensemble = text_of("ensemble");
+    const auto wanted = read_object(request.body, {"scene", "session", "ensemble", "replace"});
+    if (!wanted) return respond(error_response(400, wanted.error().message));
+    const std::string scene = text_at(*wanted, "scene"), session = text_at(*wanted, "session");
+    const std::string ensemble = text_at(*wanted, "ensemble");
     if (scene.empty() + session.empty() + ensemble.empty() != 2) {
         return respond(error_response(400, "the body names a scene, a session or an ensemble, one of them, by its id"));
     }
@@ -315,14 +308,9 @@ void Start::save(const Request& request, const Respond& respond) {
 }
 
 void Start::save_wanted(const std::string& body, const Respond& respond) {
-    auto wanted = parse_json(body, Library::most_session_values);
-    const Status keys = !wanted               ? Status(wanted.error())
-                        : wanted->is_object() ? twin::check_keys(*wanted, {"name", "file"})
-                                              : Status(Error{"the body is an object with name"});
-    if (!keys) return respond(error_response(400, keys.error().message));
-    const auto named = wanted->find("name");
-    const std::string name =
-        named != wanted->end() && named->is_string() ? tidy_name(named->get<std::string>(), 60) : "";
+    auto wanted = read_object(body, {"name", "file"}, Library::most_session_values);
+    if (!wanted) return respond(error_response(400, wanted.error().message));
+    const std::string name = tidy_name(text_at(*wanted, "name"), 60);
     if (file_name_of(name).empty()) {
         return respond(error_response(400, "a session needs a name with letters or digits"));
     }

@@ -112,11 +112,7 @@ Result<std::vector<TileAddress>> read_saved_tiles(const json& written) {
     const auto read_one = [](const json& one) -> Result<TileAddress> {
         if (!one.is_object()) return Error{"must be an object"};
         TALUS_TRY(twin::check_keys(one, {"address", "by"}));
-        const auto text = [&](const char* key) {
-            const auto found = one.find(key);
-            return found != one.end() && found->is_string() ? found->get<std::string>() : std::string();
-        };
-        TileAddress tile{"", text("address"), tidy_name(text("by"), longest_by)};
+        TileAddress tile{"", text_at(one, "address"), tidy_name(text_at(one, "by"), longest_by)};
         if (tile.address.empty()) return Error{"address: missing; it must be a text"};
         if (const Status right = check_tile_address(tile.address); !right) {
             return Error{"address: " + right.error().message};

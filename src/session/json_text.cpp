@@ -1,7 +1,14 @@
 #include "session/json_text.hpp"
 
+#include <utility>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "core/try.hpp"
 #include "core/visible_text.hpp"
 #include "geo/json_text.hpp"
+#include "twin/json_keys.hpp"
 
 namespace talus::session {
 namespace {
@@ -18,8 +25,21 @@ Result<nlohmann::json> parse_json(std::string_view text, std::size_t most_values
     return parsed;
 }
 
+Result<nlohmann::json> read_object(std::string_view text, std::initializer_list<std::string_view> keys,
+                                   std::size_t most_values) {
+    TALUS_ASSIGN(auto body, parse_json(text, most_values));
+    if (!body.is_object()) return Error{fmt::format("the body is an object with {}", fmt::join(keys, ", "))};
+    TALUS_TRY(twin::check_keys(body, keys));
+    return Result<nlohmann::json>(std::move(body));
+}
+
 std::string to_text(const nlohmann::json& content) {
     return visible(utf8(content), "\\\\");
+}
+
+std::string text_at(const nlohmann::json& object, const char* key) {
+    const auto found = object.is_object() ? object.find(key) : object.end();
+    return found != object.end() && found->is_string() ? found->get<std::string>() : "";
 }
 
 std::string tidy_name(std::string_view name, std::size_t longest) {

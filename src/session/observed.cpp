@@ -6,21 +6,19 @@
 
 #include "ensemble/predict.hpp"
 #include "messages/messages.hpp"
-#include "twin/answers.hpp"
+#include "twin/live_run.hpp"
 #include "twin/results.hpp"
-#include "twin/table_entry.hpp"
+#include "twin/setup.hpp"
 
 namespace talus::session {
 namespace {
 
-using nlohmann::json;
-
-/// `entries`: of the setup.
-messages::Observed observed_in(const scene::Scene& scene, const run::RunResult& result, const json& entries) {
+messages::Observed observed_in(const scene::Scene& scene, const run::RunResult& result,
+                               const std::vector<twin::TableSetup>& entries) {
     std::vector<std::string> ids;
     for (const std::string& section : twin::sections_of(twin::TableKind::observation)) {
-        for (const json& entry : entries) {
-            if (entry["section"] == section) ids.push_back(entry["id"]);
+        for (const twin::TableSetup& entry : entries) {
+            if (entry.body->section == section) ids.push_back(entry.id);
         }
     }
     const std::vector<ensemble::ObservedValue> observed = ensemble::observed_values(scene);
@@ -29,7 +27,6 @@ messages::Observed observed_in(const scene::Scene& scene, const run::RunResult& 
     rows.reserve(observed.size());
     for (std::size_t k = 0; k < observed.size(); ++k) {
         const ensemble::ObservedValue& o = observed[k];
-        const bool is = o.kind == ensemble::ObservedValue::Kind::equal;
         const bool reached = std::isfinite(predicted[k]) && !(o.unreached < 0 && predicted[k] < 0);
         const double deviation = deviation_of(o, reached ? predicted[k] : o.unreached);
         rows.push_back({.id = k < ids.size() ? std::optional(ids[k]) : std::nullopt,
@@ -37,9 +34,7 @@ messages::Observed observed_in(const scene::Scene& scene, const run::RunResult& 
                         .unit = o.unit,
                         .observed = o.value,
                         .uncertainty = o.uncertainty,
-                        .is = is                                                  ? "equal"
-                              : o.kind == ensemble::ObservedValue::Kind::at_least ? "at_least"
-                                                                                  : "below",
+                        .is = o.is(),
                         .computed = reached ? std::optional(predicted[k]) : std::nullopt,
                         .deviation = deviation});
     }
@@ -50,7 +45,7 @@ messages::Observed observed_in(const scene::Scene& scene, const run::RunResult& 
 
 Rest observed(Scenarios& all, int index, const Arguments& /*arguments*/) {
     const twin::Scenario& scenario = all.at(index);
-    return [outcome = twin::outcome_of(scenario), entries = twin::setup_json(scenario)["observations"]] {
+    return [outcome = twin::outcome_of(scenario), entries = scenario.run().setup().observations] {
         const auto& [scene, result] = outcome;
         return reply(observed_in(scene, result, entries));
     };

@@ -11,7 +11,6 @@
 #include "session/json_text.hpp"
 #include "session/thinned.hpp"
 #include "session/url.hpp"
-#include "twin/json_keys.hpp"
 
 namespace talus::session {
 namespace {
@@ -64,11 +63,6 @@ std::optional<PageAnswer> unknown_key(const Arguments& query, const std::vector<
                                    known.empty() ? "nothing" : fmt::format("{}", fmt::join(known, ", "))));
     }
     return {};
-}
-
-std::string text_of(const json& body, const char* key) {
-    const auto found = body.is_object() ? body.find(key) : body.end();
-    return found != body.end() && found->is_string() ? found->get<std::string>() : "";
 }
 
 }  // namespace
@@ -165,15 +159,12 @@ PageAnswer PageApi::change(const std::string& method, std::string_view path, con
 }
 
 PageAnswer PageApi::control(const json& body, const std::string& person, const Now& now) {
-    const std::string what = text_of(body, "do");
-    if (what != "request" && what != "release" && what != "grant" && what != "decline") {
-        return refused(Outcome::wrong,
-                       fmt::format("do = \"{}\"; it is request, release, grant or decline", tidy_name(what, 30)));
-    }
-    if (const Status changed = session_.control(what, person, now()); !changed) {
+    const auto what = read_control(body);
+    if (!what) return refused(Outcome::wrong, what.error().message);
+    if (const Status changed = session_.control(*what, person, now()); !changed) {
         return refused(Outcome::not_now, changed.error().message);
     }
-    return to_answer(reply(messages::Done{.done = what, .created = {}}));
+    return to_answer(reply(messages::Done{.done = *what, .created = {}}));
 }
 
 }  // namespace talus::session

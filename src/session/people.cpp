@@ -4,8 +4,10 @@
 
 #include <fmt/format.h>
 
+#include "core/try.hpp"
 #include "session/json_text.hpp"
 #include "session/secret.hpp"
+#include "twin/json_keys.hpp"
 
 namespace talus::session {
 namespace {
@@ -17,6 +19,13 @@ constexpr std::array<const char*, 7> colours = {"#e69f00", "#56b4e9", "#009e73",
                                                 "#0072b2", "#d55e00", "#cc79a7"};
 
 }  // namespace
+
+Result<std::string> read_control(const nlohmann::json& wanted) {
+    if (wanted.is_object()) TALUS_TRY(twin::check_keys(wanted, {"do", "secret"}));
+    std::string what = text_at(wanted, "do");
+    if (what == "request" || what == "release" || what == "grant" || what == "decline") return what;
+    return Error{fmt::format("do = \"{}\"; it is request, release, grant or decline", tidy_name(what, 30))};
+}
 
 People::Member* People::member(const std::string& id) {
     const auto found = std::find_if(members_.begin(), members_.end(), [&](const Member& m) { return m.id == id; });
@@ -138,10 +147,8 @@ Status People::control(const std::string& what, const std::string& id, Time now)
     if (!request_) return Error{"nobody has asked for control"};
     if (what == "grant") {
         pass_control();
-    } else if (what == "decline") {
-        request_.reset();
     } else {
-        return Error{fmt::format("do = \"{}\"; it is request, release, grant or decline", what)};
+        request_.reset();
     }
     return {};
 }

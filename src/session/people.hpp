@@ -21,6 +21,9 @@ struct Person {
     std::string secret{};
 };
 
+/// What the body of `POST /api/control` wants: request, release, grant or decline. Errors: none of these, another key.
+[[nodiscard]] Result<std::string> read_control(const nlohmann::json& wanted);
+
 /// Who is in the session, and which controller has control. Does not depend on connections; time is an argument.
 class People {
   public:
@@ -37,7 +40,7 @@ class People {
     void rename(const std::string& id, const std::string& name);
     void set_mark(const std::string& id, std::optional<std::array<double, 3>> mark);
 
-    /// `what`: request, release, grant or decline. Errors: no such person or not a controller, not the holder, no
+    /// `what`: as of read_control(). Errors: no such person or not a controller, not the holder, no
     /// request, another request is open.
     [[nodiscard]] Status control(const std::string& what, const std::string& id, Time now);
     /// Whether `id` (empty: a program without a WebSocket) may change something now. The error says who has control.

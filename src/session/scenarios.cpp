@@ -93,21 +93,21 @@ Scenarios::Slot* Scenarios::furthest_behind(const Slots& slots) {
 json Scenarios::state(int index) const {
     const Slot& slot = slots_[static_cast<std::size_t>(index)];
     const bool steps = slot.steps();
-    json state = twin::state_json(*slot.scenario, !steps);
-    state["scenario"] = name_of(index);
-    state["speed_factor"] = pace_.factor() ? json(*pace_.factor()) : json();
-    state["real_time_factor"] = steps ? slot.rate.real_time_factor() : 0.0;
-    state["steps_per_second"] = steps ? slot.rate.steps_per_second() : 0.0;
-    if (slot.ready()) state["status"] = slot.running ? "running" : "paused";
-    state["preparing"] =
-        slot.job ? json(messages::Preparation{.what = slot.job->what, .share = slot.job->share.load()}) : json();
-    return state;
+    messages::State state{.run_state = twin::state_of(*slot.scenario, !steps),
+                          .scenario = name_of(index),
+                          .speed_factor = pace_.factor(),
+                          .real_time_factor = steps ? slot.rate.real_time_factor() : 0.0,
+                          .steps_per_second = steps ? slot.rate.steps_per_second() : 0.0,
+                          .preparing = {}};
+    if (slot.ready()) state.run_state.status = slot.running ? "running" : "paused";
+    if (slot.job) state.preparing = messages::Preparation{.what = slot.job->what, .share = slot.job->share.load()};
+    return twin::with_short_numbers(state);
 }
 
 json Scenarios::setup(int index) const {
     json setup = twin::setup_json(*slots_[static_cast<std::size_t>(index)].scenario);
     setup["scenario"] = name_of(index);
-    setup["name"] = slots_[static_cast<std::size_t>(index)].title;
+    setup["name"] = title(index);
     return setup;
 }
 
@@ -147,7 +147,7 @@ void Scenarios::tell_setup(int index) {
     json now = setup(index);
     if (now == slot.told_setup) return;
     slot.told_setup = now;
-    watcher_.setup(index, std::move(now));
+    watcher_.setup(index, std::move(now), slot.scenario->run().setup());
 }
 
 void Scenarios::tell_state(int index, Clock::time_point now) {

@@ -47,7 +47,7 @@ class Watcher {
     virtual ~Watcher() = default;
     virtual void frames(FrameSet set) = 0;
     virtual void state(int scenario, nlohmann::json state) = 0;
-    virtual void setup(int scenario, nlohmann::json setup) = 0;
+    virtual void setup(int scenario, nlohmann::json told, const twin::Setup& setup) = 0;
     virtual void done(int scenario, const std::string& by, const std::string& sentence) = 0;
     virtual void scenarios(std::vector<std::string> names) = 0;
     virtual void alerts(int scenario, RunAlerts alerts) = 0;
@@ -111,6 +111,8 @@ class Scenarios {
     /// Error: the first one cannot be removed.
     [[nodiscard]] Status remove(int index);
 
+    /// Given by people; may be empty.
+    [[nodiscard]] const std::string& title(int index) const { return slots_[static_cast<std::size_t>(index)].title; }
     [[nodiscard]] nlohmann::json state(int index) const;
     [[nodiscard]] nlohmann::json setup(int index) const;
     /// The current frame with every `stride`-th particle.

@@ -167,8 +167,8 @@ void Session::state(int scenario, json state) {
     room_->keep(Kept::state, scenario, message_text(Kept::state, std::move(state)));
 }
 
-void Session::setup(int scenario, json setup) {
-    room_->keep(Kept::setup, scenario, message_text(Kept::setup, std::move(setup)));
+void Session::setup(int scenario, json told, const twin::Setup& /*setup*/) {
+    room_->keep(Kept::setup, scenario, message_text(Kept::setup, std::move(told)));
     setups_changed_ = true;
 }
 

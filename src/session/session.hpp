@@ -82,7 +82,7 @@ class Session final : private Watcher {
     // Watcher.
     void frames(FrameSet set) override { room_->deliver(set.scenario, pack(set)); }
     void state(int scenario, nlohmann::json state) override;
-    void setup(int scenario, nlohmann::json setup) override;
+    void setup(int scenario, nlohmann::json told, const twin::Setup& setup) override;
     void done(int scenario, const std::string& by, const std::string& sentence) override;
     void scenarios(std::vector<std::string> names) override;
     void alerts(int, RunAlerts) override {}

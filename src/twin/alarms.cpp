@@ -61,7 +61,7 @@ void AlarmWatch::watch(const Setup& setup) {
     for (const TableSetup& alarm : setup.alarms) {
         Rule* before = find_id(rules_, alarm.id);
         // A rule that has been taken over already has no body any more.
-        if (before != nullptr && before->body && same_values(*before->body, *alarm.body)) {
+        if (before != nullptr && before->body && *before->body == *alarm.body) {
             rules.push_back(std::move(*before));
             continue;
         }

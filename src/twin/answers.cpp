@@ -114,16 +114,6 @@ double short_number(double value) {
     return text.size() + noticeably <= fmt::format("{}", value).size() ? std::strtod(text.c_str(), nullptr) : value;
 }
 
-/// For what is measured; values that somebody gave stay as they are.
-json with_short_numbers(json measured) {
-    if (measured.is_structured()) {
-        for (json& child : measured) child = with_short_numbers(std::move(child));
-    } else if (measured.is_number_float()) {
-        measured = short_number(measured.get<double>());
-    }
-    return measured;
-}
-
 const report::IntensityGuideline& guideline_of(const scene::Scene& scene) {
     return report::intensity_guideline(scene.spec.outputs.intensity_guideline);
 }
@@ -185,6 +175,15 @@ messages::RemovedImpact removed_impact_of(const LiveRun::Removed& gone, const re
 }
 
 }  // namespace
+
+json with_short_numbers(json measured) {
+    if (measured.is_structured()) {
+        for (json& child : measured) child = with_short_numbers(std::move(child));
+    } else if (measured.is_number_float()) {
+        measured = short_number(measured.get<double>());
+    }
+    return measured;
+}
 
 messages::Parameter described(const params::Parameter& parameter, std::string key) {
     const params::Range& range = parameter.range;
@@ -248,7 +247,7 @@ double peak_speed(const observe::Observer& observer, const sim::State& state) {
 
 }  // namespace
 
-json state_json(const Scenario& scenario, bool with_hash) {
+messages::RunState state_of(const Scenario& scenario, bool with_hash) {
     const LiveRun& run = scenario.run();
     const sim::State& state = run.state();
     const observe::TimeSample now = run.observer().sample(run.model(), state);
@@ -257,34 +256,39 @@ json state_json(const Scenario& scenario, bool with_hash) {
     constexpr double lately = 1;  // s
     const bool advances = !front.empty() && state.time - front.back().arrival_time <= lately;
     const std::vector<FramePtr>& frames = run.recording().frames();
-    json answer = {{"status", phase_name(run.phase())},
-                   {"message", scenario.message()},
-                   {"time_s", state.time},
-                   {"end_time_s", scenario.scene().spec.solver.end_time},
-                   {"expected_end_s", number_or_null<json>(run.expected_end().value_or(observe::never))},
-                   {"wall_remaining_s", number_or_null<json>(run.wall_remaining().value_or(observe::never))},
-                   {"step", state.step},
-                   {"particles", state.count},
-                   {"pore_pressure", knows_pore_pressure(run.model())},
-                   {"front_chainage_m", number_or_null<json>(now.front_chainage)},
-                   {"front_velocity_mps", advances ? number_or_null<json>(front.back().front_velocity) : json()},
-                   {"largest_speed_mps", number_or_null<json>(state.max_speed)},
-                   {"peak_speed_mps", number_or_null<json>(peak_speed(run.observer(), state))},
-                   {"mean_compression", number_or_null<json>(state.mean_compression)},
-                   {"max_compression", number_or_null<json>(state.max_compression)},
-                   {"overcompressed_share", number_or_null<json>(state.overcompressed_share)},
-                   {"too_compressed", state.step == 0 ? json() : json(run.too_compressed())},
-                   {"verdict", state.step == 0 ? json() : json(run::verdict_json(run.verdict()))},
-                   {"recording", messages::RecordingExtent{
-                                     .first_s = frames.empty() ? std::nullopt : std::optional(frames.front()->time),
-                                     .last_s = frames.empty() ? std::nullopt : std::optional(frames.back()->time),
-                                     .frames = frames.size(),
-                                     .bytes = run.recording().bytes()}}};
-    for (const observe::NamedNumber& volume : observe::volume_numbers) {
-        answer[std::string(volume.key)] = now.*volume.sample;
-    }
-    if (with_hash) answer["hash"] = to_hex(hash_state(state));
-    return with_short_numbers(std::move(answer));
+    return {.status = phase_name(run.phase()),
+            .message = scenario.message(),
+            .time_s = state.time,
+            .end_time_s = scenario.scene().spec.solver.end_time,
+            .expected_end_s = run.expected_end(),
+            .wall_remaining_s = run.wall_remaining(),
+            .step = state.step,
+            .particles = state.count,
+            .volume_released_m3 = now.volume_released,
+            .volume_entrained_m3 = now.volume_entrained,
+            .pore_pressure = knows_pore_pressure(run.model()),
+            .volume_held_m3 = now.volume_held,
+            .volume_moving_m3 = now.volume_moving,
+            .volume_deposited_m3 = now.volume_deposited,
+            .volume_left_m3 = now.volume_left,
+            .front_chainage_m = now.front_chainage,
+            .front_velocity_mps = advances ? front.back().front_velocity : observe::never,
+            .largest_speed_mps = state.max_speed,
+            .peak_speed_mps = peak_speed(run.observer(), state),
+            .mean_compression = state.mean_compression,
+            .max_compression = state.max_compression,
+            .overcompressed_share = state.overcompressed_share,
+            .too_compressed = state.step == 0 ? std::nullopt : std::optional(run.too_compressed()),
+            .verdict = state.step == 0 ? json() : json(run::verdict_json(run.verdict())),
+            .recording = {.first_s = frames.empty() ? std::nullopt : std::optional(frames.front()->time),
+                          .last_s = frames.empty() ? std::nullopt : std::optional(frames.back()->time),
+                          .frames = frames.size(),
+                          .bytes = run.recording().bytes()},
+            .hash = with_hash ? std::optional(to_hex(hash_state(state))) : std::nullopt};
+}
+
+json state_json(const Scenario& scenario) {
+    return with_short_numbers(state_of(scenario));
 }
 
 json verdict_json(const Scenario& scenario) {

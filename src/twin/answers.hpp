@@ -12,12 +12,16 @@
 /// What a scenario answers at once, as docs/protocol.md has it, without `scenario`: it does not know its name.
 namespace talus::twin {
 
+/// For what is measured, some of it in single precision; values that somebody gave stay as they are.
+[[nodiscard]] nlohmann::json with_short_numbers(nlohmann::json measured);
+
 /// A key of the scene file, without its values. `key`: with its section.
 [[nodiscard]] messages::Parameter described(const params::Parameter& parameter, std::string key);
 [[nodiscard]] nlohmann::json scene_json(const Scenario& scenario);
-/// Also without speed_factor, real_time_factor and steps_per_second; "status" is that of the run: ready, at_rest, ended
-/// or fault. `with_hash`: it takes milliseconds with many particles.
-[[nodiscard]] nlohmann::json state_json(const Scenario& scenario, bool with_hash = true);
+/// `with_hash`: it takes milliseconds with many particles. The status is that of the run: ready, at_rest, ended or
+/// fault.
+[[nodiscard]] messages::RunState state_of(const Scenario& scenario, bool with_hash = true);
+[[nodiscard]] nlohmann::json state_json(const Scenario& scenario);
 /// Of the run as it is now; that of state_json() may be of a moment ago.
 [[nodiscard]] nlohmann::json verdict_json(const Scenario& scenario);
 /// As in a setup file, with what the page cannot find out by itself.

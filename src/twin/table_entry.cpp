@@ -164,7 +164,7 @@ void put_entries(params::SceneSpec& spec, TableKind kind, const std::vector<Tabl
     for (const TableEntry& entry : entries) append_entry(spec, entry);
 }
 
-bool same_values(const TableEntry& a, const TableEntry& b) {
+bool operator==(const TableEntry& a, const TableEntry& b) {
     return a.section == b.section && table_values_json(a) == table_values_json(b);
 }
 

@@ -38,7 +38,8 @@ struct TableEntry {
 /// These in place of all entries of that kind.
 void put_entries(params::SceneSpec& spec, TableKind kind, const std::vector<TableEntry>& entries);
 
-[[nodiscard]] bool same_values(const TableEntry& a, const TableEntry& b);
+/// In all values, with the default of what is not given.
+[[nodiscard]] bool operator==(const TableEntry& a, const TableEntry& b);
 
 /// Values by key; null: none.
 [[nodiscard]] nlohmann::json table_values_json(const TableEntry& entry);

@@ -146,7 +146,7 @@ bool actions(const std::string& bytes) {
         (void)setup_json(scenario);
     }
     if (scenario.phase() == run::RunPhase::fault) return done_count > 0;
-    const auto state = state_json(scenario, false);
+    const auto state = state_json(scenario);
     for (const char* key : {"volume_released_m3", "volume_moving_m3", "largest_speed_mps"}) {
         require(state[key].is_number() && std::isfinite(state[key].get<double>()), key);
     }

@@ -24,7 +24,7 @@ using testing::ElementsAre;
 struct Nobody : session::Watcher {
     void frames(session::FrameSet) override {}
     void state(int, json) override {}
-    void setup(int, json) override {}
+    void setup(int, json, const twin::Setup&) override {}
     void done(int, const std::string&, const std::string&) override {}
     void scenarios(std::vector<std::string>) override {}
     void alerts(int, session::RunAlerts) override {}

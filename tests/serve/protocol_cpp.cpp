@@ -20,11 +20,10 @@ using Kind = Type::Kind;
 
 constexpr std::string_view any_json = "nlohmann::json", server_messages = "ServerMessage";
 /// These stay JSON: the modules that write results.json and read overlays make their texts, scenarios and their
-/// sessions each know a part of states and setups, which follow the scene file, and values of triggers are as somebody
-/// sent them.
-constexpr std::array<std::string_view, 12> as_they_came = {
-    "Verdict", "Check",      "Figure",      "State",        "Setup",          "Gauge",
-    "Note",    "TableEntry", "OverlayData", "OverlayStyle", "OverlayFeature", "TriggerValues"};
+/// sessions each know a part of setups, which follow the scene file, and values of triggers are as somebody sent them.
+constexpr std::array<std::string_view, 11> as_they_came = {
+    "Verdict",    "Check",       "Figure",       "Setup",          "Gauge",        "Note",
+    "TableEntry", "OverlayData", "OverlayStyle", "OverlayFeature", "TriggerValues"};
 constexpr std::string_view made_from =
     "// Made from src/messages/protocol.json: edit that; docs/protocol.md tells how this is made again.\n"
     "// clang-format off\n";

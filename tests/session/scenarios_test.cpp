@@ -19,7 +19,7 @@ using ::testing::HasSubstr;
 struct Nobody : Watcher {
     void frames(FrameSet) override {}
     void state(int, json) override {}
-    void setup(int, json) override {}
+    void setup(int, json, const twin::Setup&) override {}
     void done(int, const std::string&, const std::string&) override {}
     void scenarios(std::vector<std::string>) override {}
     void alerts(int, RunAlerts) override {}

@@ -340,7 +340,7 @@ export interface Verdict {
   checks: Check[];
 }
 
-/** A change that is being prepared. */
+/** A change that is being prepared, or what is being opened. */
 export interface Preparation {
   /** For people. */
   what: string;
@@ -360,10 +360,8 @@ export interface RecordingExtent {
   bytes: number;
 }
 
-/** Status, time, rates and mass balance of a scenario. */
-export interface State {
-  /** Its name. */
-  scenario: ScenarioName;
+/** Status, time and mass balance of a run. */
+export interface RunState {
   /** Whether it runs. */
   status: Status;
   /** One sentence, or empty. */
@@ -378,12 +376,6 @@ export interface State {
   wall_remaining_s: number | null;
   /** Steps taken. */
   step: number;
-  /** Simulated seconds per second that are wanted; null: as fast as it goes. */
-  speed_factor: number | null;
-  /** Simulated seconds per second of late. */
-  real_time_factor: number;
-  /** Wall time. */
-  steps_per_second: number;
   /** In the run now. */
   particles: number;
   /** With what has flowed in. */
@@ -418,12 +410,24 @@ export interface State {
   too_compressed: boolean | null;
   /** Whether the run so far can be relied on, as of a moment ago; null before the first step. */
   verdict: Verdict | null;
-  /** A change that is being prepared, and the share of it that is done. */
-  preparing: Preparation | null;
   /** What is recorded. */
   recording: RecordingExtent;
   /** Of time and particles; while not running. */
   hash?: string;
+}
+
+/** The run of a scenario, and what its session does with it. */
+export interface State extends RunState {
+  /** Its name. */
+  scenario: ScenarioName;
+  /** Simulated seconds per second that are wanted; null: as fast as it goes. */
+  speed_factor: number | null;
+  /** Simulated seconds per second of late. */
+  real_time_factor: number;
+  /** Wall time. */
+  steps_per_second: number;
+  /** A change that is being prepared, and the share of it that is done. */
+  preparing: Preparation | null;
 }
 
 /** Debris that starts to move at one moment. */
@@ -552,17 +556,9 @@ export interface Inflow extends InflowValues {
 }
 
 /** Where depth and speed are recorded. */
-export interface Gauge {
+export interface Gauge extends GaugePlace {
   /** Of this object, as actions name it. */
   id: string;
-  /** For people. */
-  name: string;
-  /** East. */
-  x_m: number;
-  /** North. */
-  y_m: number;
-  /** Null: given as a place. */
-  chainage_m: number | null;
   /** It is of the scene file; false: somebody made it here. */
   from_scene: boolean;
   /** False: from the next restart. */

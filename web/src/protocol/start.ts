@@ -1,5 +1,5 @@
 // Made from src/messages/protocol.json: edit that; docs/protocol.md tells how this is made again.
-import type { Journal, Parameter, Point, Role, SavedOverlay, SavedTiles, VariedKey } from "./messages";
+import type { Journal, Parameter, Point, Preparation, Role, SavedOverlay, SavedTiles, VariedKey } from "./messages";
 
 /** A scene that can be opened. */
 export interface KnownScene {
@@ -344,14 +344,6 @@ export interface WantedDesign {
 /** Body of POST /api/jobs. */
 export type WantedJob = WantedEnsemble | WantedBackAnalysis | WantedValidation | WantedRisk | WantedDesign;
 
-/** What is being opened. */
-export interface Opening {
-  /** For people. */
-  what: string;
-  /** That is done, 0 to 1. */
-  share: number;
-}
-
 /** What can be opened, what is being opened. folder and the following are for controllers. */
 export interface StartPage {
   /** True. */
@@ -359,7 +351,7 @@ export interface StartPage {
   /** The session that is open; null: none. */
   open: { title: string } | null;
   /** What is being opened; null: nothing. */
-  opening: Opening | null;
+  opening: Preparation | null;
   /** Why the last one could not be opened. */
   error: string | null;
   /** Sessions opened so far: grows when another one has taken the place. */
