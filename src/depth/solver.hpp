@@ -287,6 +287,7 @@ class Solver {
     std::vector<float> passes_east_, passes_north_;    ///< by cell, see StageData; empty: none is watched
     std::vector<std::uint8_t> unknown_;                ///< by cell
     std::vector<std::uint8_t> has_unknown_, changed_;  ///< by tile
+    std::vector<std::uint8_t> near_structure_;         ///< by tile, see StageData; empty: there is no structure
     std::vector<Segment> segments_;
     std::vector<float> fastest_;  ///< by segment
     std::vector<double> lost_;    ///< m, by segment

@@ -251,6 +251,8 @@ struct LaneParticles : LaneAccess<count> {
             if (!near.at(lane)) continue;
             share.density.set(
                 lane, sample_walls(data.model, data.ground, data.state, work, i + static_cast<std::size_t>(lane),
+                                   {base.distance.at(lane), Access::at(base.normal, lane), base.density.at(lane),
+                                    base.slope.at(lane)},
                                    Access::at(p, lane), Access::at(displacement, lane)));
         }
         share.gradient = boundary_gradient();
@@ -277,8 +279,9 @@ struct LaneParticles : LaneAccess<count> {
         for (int lane = 0; lane < count; ++lane) {
             if (!near.at(lane)) continue;
             Access::set(shift, lane,
-                        undo_overlap_near_walls(data.model, data.ground, data.state, i + static_cast<std::size_t>(lane),
-                                                Access::at(p, lane), max_shift.at(lane)));
+                        undo_overlap_near_walls(data.model, data.ground, data.state, data.work,
+                                                i + static_cast<std::size_t>(lane), Access::at(p, lane),
+                                                max_shift.at(lane), Access::at(shift, lane)));
         }
         return shift;
     }
