@@ -95,44 +95,40 @@ class WallPatches {
 template <class F>
 void WallPatches::spread(std::int32_t building, const LocalPoint& at, double size, const F& f) const {
     constexpr double same_plane = 0.01;  // m
-    struct Touched {
-        const Column* column;
-        Column::Place place;
-        double along, up;
-    };
-    std::vector<Touched> touched;
-    touched.reserve(8);
-    double nearest = std::numeric_limits<double>::infinity(), whole = 0;
-    for (const std::uint32_t index : near(at.x, at.y)) {
-        const Column& column = columns_[index];
-        if (column.building != building) continue;
-        const Column::Place place = column.place_of(at);
-        const double along = folded_overlap(column.from + place.along, size, column.length, column.from, column.width);
-        if (!(along > 0)) continue;
-        const double height = column.rows * column.row_height;
-        const double up = folded_overlap(place.up, size, height, 0, height);
-        if (!(up > 0)) continue;
-        nearest = std::min(nearest, std::abs(place.out));
-        touched.push_back({&column, place, along, up});
-    }
     // It touches the nearest walls: two at a corner.
-    std::erase_if(touched, [&](const Touched& t) { return std::abs(t.place.out) > nearest + same_plane; });
-    for (const Touched& t : touched) whole += t.along * t.up;
-    for (const Touched& t : touched) {
-        const Column& column = *t.column;
-        const double scale = t.along / (whole * column.area);
+    double nearest = std::numeric_limits<double>::infinity(), whole = 0;
+    const auto for_each = [&](const auto& g) {
+        for (const std::uint32_t index : near(at.x, at.y)) {
+            const Column& column = columns_[index];
+            if (column.building != building) continue;
+            const Column::Place place = column.place_of(at);
+            if (std::abs(place.out) > nearest + same_plane) continue;
+            const double along =
+                folded_overlap(column.from + place.along, size, column.length, column.from, column.width);
+            if (!(along > 0)) continue;
+            const double height = column.rows * column.row_height;
+            const double up = folded_overlap(place.up, size, height, 0, height);
+            if (up > 0) g(column, place, along, up);
+        }
+    };
+    for_each([&](const Column&, const Column::Place& place, double, double) {
+        nearest = std::min(nearest, std::abs(place.out));
+    });
+    for_each([&](const Column&, const Column::Place&, double along, double up) { whole += along * up; });
+    for_each([&](const Column& column, const Column::Place& place, double along, double) {
+        const double scale = along / (whole * column.area);
         const double height = column.rows * column.row_height;
         // No row is covered beyond those, nor by what is folded back at foot or top.
-        const double low = std::min(t.place.up, 2 * height - t.place.up) - size / 2;
-        const double high = std::max(t.place.up, -t.place.up) + size / 2;
+        const double low = std::min(place.up, 2 * height - place.up) - size / 2;
+        const double high = std::max(place.up, -place.up) + size / 2;
         const double rows = column.rows;
         const auto first = static_cast<std::int32_t>(std::clamp(low / column.row_height - 1, 0.0, rows));
         const auto last = static_cast<std::int32_t>(std::clamp(high / column.row_height + 2, 0.0, rows));
         for (std::int32_t row = first; row < last; ++row) {
-            const double up = folded_overlap(t.place.up, size, height, row * column.row_height, column.row_height);
+            const double up = folded_overlap(place.up, size, height, row * column.row_height, column.row_height);
             if (up > 0) f(column.first_patch + static_cast<std::uint32_t>(row), up * scale);
         }
-    }
+    });
 }
 
 }  // namespace talus::observe

@@ -246,6 +246,8 @@ struct LaneParticles : LaneAccess<count> {
         if (data.ground.solids.empty()) return share;
         const Mask near = near_walls(p);
         std::fill_n(work.has_walls.begin() + static_cast<std::ptrdiff_t>(i), count, std::uint8_t{0});
+        store(p, work.wall_place, i);
+        store(Real(data.ground.solids.range()), work.wall_distance, i);
         if (!any(near)) return share;
         for (int lane = 0; lane < count; ++lane) {
             if (!near.at(lane)) continue;

@@ -18,6 +18,7 @@ float sample_walls(const Model& model, const Ground& ground, const State& state,
     work.boundary_gradient.set(i, boundary.gradient);
     work.has_walls[i] = boundary.faces[1].building >= 0;
     if (work.has_walls[i]) {
+        work.wall_distance[i] = boundary.faces[1].distance;
         WallContacts& walls = work.walls[i];
         for (std::size_t f = 0; f < walls.faces.size(); ++f) {
             walls.faces[f] = boundary.faces[f + 1];
@@ -37,6 +38,11 @@ Vec3<float> undo_overlap_near_walls(const Model& model, const Ground& ground, co
                                     std::size_t i, const Vec3<float>& p, float max_shift,
                                     const Vec3<float>& above_ground) {
     Vec3<float> shift = Vec3<float>{} + above_ground;
+    constexpr float beyond_rounding = 1e-3F;  // m
+    const float least = work.wall_distance[i] - length(p - work.wall_place.at(i));
+    work.wall_place.set(i, p);
+    work.wall_distance[i] = least;
+    if (least > static_cast<float>(model.contact_distance()) + beyond_rounding) return shift;
     const terrain::SolidSample<float> nearest =
         undo_wall_overlap(model, ground, p, max_shift, grain_rank(state.id[i]), shift);
     work.wall_distance[i] = nearest.building < 0 ? static_cast<float>(ground.solids.range()) : nearest.distance;

@@ -52,7 +52,8 @@ struct MotionRow : simd::Oct {};     ///< as in State: position x, y, z, 0; velo
     X(std::vector<float>, contact_normal)                                                                              \
     X(VectorArray, contact_friction)                                                                                   \
     /* The walls beside a particle; few have any. */                                                                   \
-    X(std::vector<float>, wall_distance)     /* m, from where it ends its step without a shift; at most that */        \
+    X(VectorArray, wall_place)               /* where walls were sampled, or the step ends without a shift */          \
+    X(std::vector<float>, wall_distance)     /* m: nothing is nearer to that place */                                  \
     X(std::vector<std::uint8_t>, has_walls)                                                                            \
     X(std::vector<WallContacts>, walls)
 // clang-format on
