@@ -244,6 +244,8 @@ double Solver::advance_stage(bool second) {
                   pointer(viscosity_)};
     data.highest_line = static_cast<float>(highest_line_);
     data.structure = pointer(structure_);
+    data.near_structure = near_structure_.data();
+    data.tile_columns = tile_columns_;
     data.inflow = {pointer(inflow_.depth),  pointer(inflow_.momentum_x), pointer(inflow_.momentum_y),
                    pointer(inflow_.from_x), pointer(inflow_.from_y),     pointer(inflow_.grains)};
     data.passes_east = pointer(passes_east_);

@@ -93,6 +93,31 @@ class Solver {
     [[nodiscard]] const std::vector<double>& passed() const { return passed_; }
     /// Gives the debris of a cell a velocity.
     void set_velocity(int column, int row, double u, double v);
+    /// A row of a tile: tile_edge cells from index `at` of cells() on.
+    struct Strip {
+        std::ptrdiff_t at = 0;
+        bool active = false;  ///< its tile took part in the last step; else one beside it did
+    };
+    /// Those of tiles that took part in the last step, and of those beside them, in which debris is deeper than
+    /// dry_depth. `near`: room for an entry per tile.
+    void find_strips(std::vector<std::uint8_t>& near, std::vector<Strip>& strips) const;
+    /// Pointers to the south-western cell of padded rasters of `size` cells before and after it.
+    struct Cells {
+        std::ptrdiff_t stride = 0;
+        std::size_t before = 0, size = 0;
+        const float *depth = nullptr, *bed = nullptr, *slope_x = nullptr, *slope_y = nullptr;
+        float *u = nullptr, *v = nullptr, *next_u = nullptr, *next_v = nullptr;  ///< a cell has twice the same of both
+        const float* pore_pressure = nullptr;  ///< times pore_pressure_left it is r_u; null: not carried
+        float pore_pressure_left = 1;
+    };
+    /// For who gives velocities to many cells at once; then call expect_waves().
+    [[nodiscard]] Cells cells();
+    /// Velocities of an active strip were changed. `faster`: where that is not 0, perhaps to waves that are faster than
+    /// signal(), or to debris whose energy line is higher than highest_line(); null: nowhere.
+    void expect_waves(const Strip& strip, const float* faster);
+    /// Of the debris so far: the fastest wave, m/s, and the highest energy line, m, as rounded.
+    [[nodiscard]] double signal() const { return signal_; }
+    [[nodiscard]] double highest_line() const { return highest_line_; }
 
     /// The longest stable step, s, with waves of a speed, m/s; and the next step of at most `longest`.
     [[nodiscard]] double stable_step(double wave) const;
@@ -262,6 +287,7 @@ class Solver {
     std::vector<float> passes_east_, passes_north_;    ///< by cell, see StageData; empty: none is watched
     std::vector<std::uint8_t> unknown_;                ///< by cell
     std::vector<std::uint8_t> has_unknown_, changed_;  ///< by tile
+    std::vector<std::uint8_t> near_structure_;         ///< by tile, see StageData; empty: there is no structure
     std::vector<Segment> segments_;
     std::vector<float> fastest_;  ///< by segment
     std::vector<double> lost_;    ///< m, by segment

@@ -141,6 +141,19 @@ void Solver::set_cover(const GroundValues& ground) {
     pad(ground.laminar_viscosity, viscosity_, 1);
     pad(ground.structure, structure_, 1);
     for (float& s : structure_) s = std::isnan(s) ? 0 : s;
+    if (!structure_.empty()) near_structure_.assign(changed_.size(), 0);
+    for (int row = 0; row < geometry_.rows && !structure_.empty(); ++row) {
+        for (int column = 0; column < geometry_.columns; ++column) {
+            if (structure_[index(column, row)] == 0) continue;
+            const int tile_row = (row + margin) / tile_edge, tile = (column + margin) / tile_edge;
+            for (int r = std::max(0, tile_row - 1); r <= std::min(tile_rows_ - 1, tile_row + 1); ++r) {
+                const auto first = static_cast<std::size_t>(r) * static_cast<std::size_t>(tile_columns_);
+                for (int c = std::max(0, tile - 1); c <= std::min(tile_columns_ - 1, tile + 1); ++c) {
+                    near_structure_[first + static_cast<std::size_t>(c)] = 1;
+                }
+            }
+        }
+    }
 }
 
 double Solver::erode(int column, int row, double depth) {

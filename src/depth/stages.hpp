@@ -59,6 +59,9 @@ struct StageData {
     Cover cover{};
     float highest_line = 0;            ///< m: no debris is faster than by a fall from there
     const float* structure = nullptr;  ///< by cell, 1: a structure stands there; null: none anywhere
+    /// By tile, `tile_columns` in a row: whether there is one in the tile or in one beside it. With `structure` only.
+    const std::uint8_t* near_structure = nullptr;
+    int tile_columns = 0;
     Inflow inflow{};
     float *passes_east = nullptr, *passes_north = nullptr;  ///< m2/s through those faces of a cell; null: not wanted
 };

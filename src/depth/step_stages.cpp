@@ -17,8 +17,8 @@ HWY_BEFORE_NAMESPACE();
 namespace talus::depth::HWY_NAMESPACE {
 namespace {
 
-/// Compiled apart: with `structures` or inflows, and with `more`: flight, what debris carries, viscosity, laws besides
-/// Voellmy's, watched faces. A step without them does not pay for them.
+/// Compiled apart: with `structures` near or inflows anywhere, and with `more`: flight, what debris carries, viscosity,
+/// laws besides Voellmy's, watched faces. A step without them does not pay for them.
 template <bool structures, bool more>
 [[gnu::flatten]] float advance_as(const StageData& given, const Segment& segment, std::uint8_t* changed,
                                   int* computed) {
@@ -107,8 +107,14 @@ template <bool structures, bool more>
     return result;
 }
 
+bool stands_near(const StageData& data, const Segment& segment) {
+    const std::uint8_t* const tiles =
+        data.near_structure + static_cast<std::ptrdiff_t>(segment.tile_row) * data.tile_columns + segment.first_tile;
+    return std::any_of(tiles, tiles + segment.tiles, [](std::uint8_t near) { return near != 0; });
+}
+
 float advance(const StageData& data, const Segment& segment, std::uint8_t* changed, int* computed) {
-    const bool structures = data.structure != nullptr || data.inflow.depth != nullptr;
+    const bool structures = data.inflow.depth != nullptr || (data.structure != nullptr && stands_near(data, segment));
     const bool more = data.from.pore_pressure != nullptr || data.from.height != nullptr ||
                       data.cover.viscosity != nullptr || data.viscosity > 0 || data.laws.turbulent_thickness > 0 ||
                       data.laws.samosat.on || data.passes_east != nullptr;

@@ -12,15 +12,17 @@ void WallApproach::update(const sim::Model& model, const Debris& debris, const W
     if (columns.empty()) return;
     sums_.resize(columns.size());
     debris.find_beside_walls(model, patches, beside_);
-    const double size = model.particle_spacing, volume = model.particle_volume();
+    const double size = model.particle_spacing, volume = model.particle_volume(), area = size * size;
     for (const WallParticle& particle : beside_.found) {
         const LocalPoint p = particle.position, v = particle.velocity;
         for (const std::uint32_t k : patches.near(p.x, p.y)) {
             const WallPatches::Column& column = columns[k];
+            if (column.roof) continue;
             const WallPatches::Column::Place place = column.place_of(p);
-            if (column.roof || place.out <= 0) continue;
-            const double part = WallPatches::overlap(place.along, size, column.width) *
-                                WallPatches::overlap(place.out, size, edge_) / (size * size) * volume;
+            if (place.out <= 0 || place.out - size / 2 >= edge_) continue;
+            const double along = WallPatches::overlap(place.along, size, column.width);
+            if (!(along > 0)) continue;
+            const double part = along * WallPatches::overlap(place.out, size, edge_) / area * volume;
             if (!(part > 0)) continue;
             Sum& sum = sums_[k];
             if (sum.volume == 0) wetted_.push_back(k);

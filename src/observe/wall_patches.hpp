@@ -97,30 +97,34 @@ void WallPatches::spread(std::int32_t building, const LocalPoint& at, double siz
     constexpr double same_plane = 0.01;  // m
     // It touches the nearest walls: two at a corner.
     double nearest = std::numeric_limits<double>::infinity(), whole = 0;
-    const std::span<const std::uint32_t> candidates = near(at.x, at.y);
     const auto for_each = [&](const auto& g) {
-        for (const std::uint32_t index : candidates) {
+        for (const std::uint32_t index : near(at.x, at.y)) {
             const Column& column = columns_[index];
             if (column.building != building) continue;
             const Column::Place place = column.place_of(at);
+            if (std::abs(place.out) > nearest + same_plane) continue;
             const double along =
                 folded_overlap(column.from + place.along, size, column.length, column.from, column.width);
+            if (!(along > 0)) continue;
             const double height = column.rows * column.row_height;
             const double up = folded_overlap(place.up, size, height, 0, height);
-            if (along > 0 && up > 0) g(column, place, along, up);
+            if (up > 0) g(column, place, along, up);
         }
     };
     for_each([&](const Column&, const Column::Place& place, double, double) {
         nearest = std::min(nearest, std::abs(place.out));
     });
-    for_each([&](const Column&, const Column::Place& place, double along, double up) {
-        if (std::abs(place.out) <= nearest + same_plane) whole += along * up;
-    });
+    for_each([&](const Column&, const Column::Place&, double along, double up) { whole += along * up; });
     for_each([&](const Column& column, const Column::Place& place, double along, double) {
-        if (std::abs(place.out) > nearest + same_plane) return;
         const double scale = along / (whole * column.area);
         const double height = column.rows * column.row_height;
-        for (std::int32_t row = 0; row < column.rows; ++row) {
+        // No row is covered beyond those, nor by what is folded back at foot or top.
+        const double low = std::min(place.up, 2 * height - place.up) - size / 2;
+        const double high = std::max(place.up, -place.up) + size / 2;
+        const double rows = column.rows;
+        const auto first = static_cast<std::int32_t>(std::clamp(low / column.row_height - 1, 0.0, rows));
+        const auto last = static_cast<std::int32_t>(std::clamp(high / column.row_height + 2, 0.0, rows));
+        for (std::int32_t row = first; row < last; ++row) {
             const double up = folded_overlap(place.up, size, height, row * column.row_height, column.row_height);
             if (up > 0) f(column.first_patch + static_cast<std::uint32_t>(row), up * scale);
         }

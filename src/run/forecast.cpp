@@ -285,7 +285,7 @@ void RunClock::tick(double wall_time, double time, const std::function<Outlook()
         course_from_ = time;
         end_ = time + course_.coasting + course_.straggling;
         const double cost = std::chrono::duration<double>(Clock::now() - start).count();
-        next_look_ = std::max(1.03 * wall_time, wall_time + 20 * cost);
+        next_look_ = std::max(1.03 * wall_time, wall_time + 50 * cost);
         next_look_if_halfway_ = std::max(1.03 * wall_time, wall_time + 5 * cost);
     }
     const double passed = time - course_from_, straggled = std::max(0.0, passed - course_.coasting);

@@ -98,6 +98,8 @@ Result<ZoomedScene> zoom_in(const scene::Scene& scene, const RunOptions& options
     scene::Scene event = scene;
     event.zoom.reset();
     event.spec.solver.model = params::ModelChoice::depth_averaged;
+    event.gauges.clear();  // all results are those of the particles
+    event.cross_sections.clear();
     std::optional<BoundaryFlow> flow;
     RunOptions recording = options;
     recording.on_frame = nullptr;
@@ -138,6 +140,8 @@ Result<ZoomedScene> zoom_in(const scene::Scene& scene, const RunOptions& options
 
     scene::Scene& particles = zoomed.scene;
     particles.spec.solver = scene.spec.solver;
+    particles.gauges = scene.gauges;
+    particles.cross_sections = scene.cross_sections;
     particles.spec.solver.particle_spacing = *spacing;
     particles.spec.solver.target_layers.reset();
     particles.spec.solver.target_particle_count.reset();

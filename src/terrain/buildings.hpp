@@ -57,6 +57,7 @@ class BuildingSolids {
     BuildingSolids(const Terrain& terrain, const std::vector<Building>& buildings, double range);
 
     [[nodiscard]] bool empty() const { return edges_.empty(); }
+    [[nodiscard]] double range() const { return range_; }
 
     /// False where no solid can be within range of a local plan position: most of the ground.
     [[nodiscard]] bool near(float x, float y) const { return !bins_.near(x, y).empty(); }

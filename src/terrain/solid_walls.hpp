@@ -51,6 +51,13 @@ struct WallSolid {
     float passing_share;                ///< no obstacle for grains of a lower rank
 
     [[nodiscard]] TALUS_DEVICE bool stops(float grain_rank) const { return grain_rank >= passing_share; }
+    /// As WallEdge::beyond(), of all its edges.
+    [[nodiscard]] TALUS_DEVICE bool beyond(double distance, double x, double y) const {
+        const double east = std::max(0.0, std::max(x_min - x, x - x_max));
+        const double north = std::max(0.0, std::max(y_min - y, y - y_max));
+        const double reach = distance + 1e-9;
+        return east * east + north * north > reach * reach;
+    }
 };
 
 /// The solids of BuildingSolids by pointers: see there. It owns nothing.
@@ -119,7 +126,7 @@ TALUS_DEVICE SolidSample<Real> SolidWalls::nearest(const Vec3<Real>& p, float gr
 
     for (const std::uint32_t k : candidates) {
         const WallSolid& solid = solids[k];
-        if (!solid.stops(grain_rank)) continue;
+        if (!solid.stops(grain_rank) || solid.beyond(inside ? best : std::min(best, range), x, y)) continue;
         for (std::uint32_t i = solid.first_edge; i < solid.last_edge; ++i) {
             const WallEdge& e = edges[i];
             if (e.beyond(inside ? best : std::min(best, range), x, y)) continue;
@@ -172,6 +179,7 @@ TALUS_DEVICE SolidSample<Real> SolidWalls::second_nearest(const Vec3<Real>& p, c
             }
             continue;
         }
+        if (solid.beyond(best, x, y)) continue;
         for (std::uint32_t i = solid.first_edge; i < solid.last_edge; ++i) {
             const WallEdge& e = edges[i];
             if (e.beyond(best, x, y)) continue;

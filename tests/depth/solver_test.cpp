@@ -94,6 +94,30 @@ TEST(Solver, has_the_same_bits_on_any_number_of_threads_and_any_instruction_set)
     });
 }
 
+TEST(Solver, meets_a_structure_beyond_the_edge_of_a_tile_as_any_other) {
+    // A stream against a row of structures, which is the first of a tile or not, according to where all of it lies.
+    const auto depths_before = [](int wall) {
+        constexpr int edge = 48;
+        depth::GroundValues ground;
+        for (int k = 0; k < edge * edge; ++k) ground.structure.push_back(k / edge == wall ? 1.0F : 0.0F);
+        depth::Solver solver(
+            grid_of(edge, edge, 1, [&](double, double y) { return static_cast<int>(y) == wall ? 5.0 : 0.0; }), {},
+            ground);
+        for (int row = wall - 8; row < wall; ++row) {
+            for (int column = 10; column < 38; ++column) solver.inject(column, row, 0.5, 0, 4);
+        }
+        advance_until(solver, 1);
+        std::vector<float> depths;
+        for (int row = wall - 12; row <= wall + 2; ++row) {
+            for (int column = 8; column < 40; ++column) depths.push_back(solver.depth_at(column, row));
+        }
+        return depths;
+    };
+    const std::vector<float> within = depths_before(22);
+    EXPECT_EQ(depths_before(30), within) << "in the first row of a tile";
+    EXPECT_EQ(depths_before(29), within) << "in the last";
+}
+
 TEST(Solver, names_the_instruction_set_that_was_chosen) {
     for (const std::string& set : simd::instruction_sets()) {
         ASSERT_TRUE(simd::choose_instruction_set(set));

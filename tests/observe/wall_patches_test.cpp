@@ -53,6 +53,15 @@ TEST(WallPatches, shares_add_up_to_one_wherever_it_is_touched) {
     }
 }
 
+TEST(WallPatches, shares_add_up_to_one_above_the_roof_and_below_the_foot) {
+    const WallPatches patches(test::make_ground().terrain, {house(10.5, 4, 7.4)}, 0.5, 4);
+    for (const double size : {0.5, 1.0, 2.7, 6.0}) {
+        for (const float z : {-0.2F, 0.1F, 2.9F, 5.0F, 7.3F, 7.6F}) {
+            EXPECT_NEAR(sum_of_shares(patches, {5, -0.1F, z}, size), 1, 1e-9) << size << ' ' << z;
+        }
+    }
+}
+
 TEST(WallPatches, a_touch_belongs_to_the_wall_it_is_on) {
     const WallPatches patches(test::make_ground().terrain, {house(10, 4, 3)}, 1, 4);
     patches.spread(0, {9.8F, 0, 1.5F}, 1, [&](std::uint32_t patch, double) {

@@ -246,11 +246,15 @@ struct LaneParticles : LaneAccess<count> {
         if (data.ground.solids.empty()) return share;
         const Mask near = near_walls(p);
         std::fill_n(work.has_walls.begin() + static_cast<std::ptrdiff_t>(i), count, std::uint8_t{0});
+        store(p, work.wall_place, i);
+        store(Real(data.ground.solids.range()), work.wall_distance, i);
         if (!any(near)) return share;
         for (int lane = 0; lane < count; ++lane) {
             if (!near.at(lane)) continue;
             share.density.set(
                 lane, sample_walls(data.model, data.ground, data.state, work, i + static_cast<std::size_t>(lane),
+                                   {base.distance.at(lane), Access::at(base.normal, lane), base.density.at(lane),
+                                    base.slope.at(lane)},
                                    Access::at(p, lane), Access::at(displacement, lane)));
         }
         share.gradient = boundary_gradient();
@@ -277,8 +281,9 @@ struct LaneParticles : LaneAccess<count> {
         for (int lane = 0; lane < count; ++lane) {
             if (!near.at(lane)) continue;
             Access::set(shift, lane,
-                        undo_overlap_near_walls(data.model, data.ground, data.state, i + static_cast<std::size_t>(lane),
-                                                Access::at(p, lane), max_shift.at(lane)));
+                        undo_overlap_near_walls(data.model, data.ground, data.state, data.work,
+                                                i + static_cast<std::size_t>(lane), Access::at(p, lane),
+                                                max_shift.at(lane), Access::at(shift, lane)));
         }
         return shift;
     }

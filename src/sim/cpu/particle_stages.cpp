@@ -78,8 +78,8 @@ TALUS_STAGE void resolve_penetration(const StageData& data, std::size_t first, s
     for_each_lanes(data, first, last, [](const Particles& at) TALUS_INLINE_LAMBDA { stages::resolve_penetration(at); });
 }
 
-/// Most particles end their step at their displaced position, without coming near a wall or below ground. The others
-/// are handled one by one.
+/// Most particles end their step at their displaced position, without coming to a wall or below ground. The others are
+/// handled one by one.
 TALUS_STAGE void enforce_boundaries(const StageData& data, std::size_t first, std::size_t last) {
     constexpr int max_parts = 4;
     const auto below_ground = [&](const V3& p)
@@ -102,12 +102,16 @@ TALUS_STAGE void enforce_boundaries(const StageData& data, std::size_t first, st
             doubtful = larger(doubtful, flag(on_the_way) * flag(below_ground(select(L(part) == parts, end, p))));
         }
         const V3 shifted = end + shift;
-        doubtful = larger(larger(doubtful, flag(below_ground(shifted))), flag(at.near_walls(end))) * at.mobile();
+        doubtful = larger(doubtful, flag(below_ground(shifted))) * at.mobile();
+        const L near = flag(at.near_walls(end)) * at.mobile();
         at.store(select(at.moves(), shifted, start), data.work.end, at.i);
-        if (!any(doubtful > L(0))) return;
+        if (!any(doubtful + near > L(0))) return;
         for (int lane = 0; lane < lane_count; ++lane) {
-            if (!(doubtful.at(lane) > 0)) continue;
-            enforce_particle(data.model, data.ground, data.state, data.work, at.i + static_cast<std::size_t>(lane));
+            const std::size_t particle = at.i + static_cast<std::size_t>(lane);
+            const bool clear =
+                !(near.at(lane) > 0) || sweeps_clear_of_walls(data.model, data.state, data.work, particle);
+            if (clear && !(doubtful.at(lane) > 0)) continue;
+            enforce_particle(data.model, data.ground, data.state, data.work, particle);
         }
     });
 }

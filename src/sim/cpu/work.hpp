@@ -52,6 +52,8 @@ struct MotionRow : simd::Oct {};     ///< as in State: position x, y, z, 0; velo
     X(std::vector<float>, contact_normal)                                                                              \
     X(VectorArray, contact_friction)                                                                                   \
     /* The walls beside a particle; few have any. */                                                                   \
+    X(VectorArray, wall_place)               /* where walls were sampled, or the step ends without a shift */          \
+    X(std::vector<float>, wall_distance)     /* m: nothing is nearer to that place */                                  \
     X(std::vector<std::uint8_t>, has_walls)                                                                            \
     X(std::vector<WallContacts>, walls)
 // clang-format on
@@ -76,16 +78,20 @@ struct StageData {
 
 // For the few particles near buildings, one at a time.
 
-/// Samples ground and walls of particle `i` at `p`, which is `displacement` from its position at the step's start.
-/// Returns their share of the density; the rest is in `work`.
+/// Samples the walls of particle `i`, beside the ground `base`, at `p`, which is `displacement` from its position at
+/// the step's start. Returns the share of ground and walls in the density; the rest is in `work`.
 float sample_walls(const Model& model, const Ground& ground, const State& state, Work& work, std::size_t i,
-                   const Vec3<float>& p, const Vec3<float>& displacement);
+                   const GroundFace<float>& base, const Vec3<float>& p, const Vec3<float>& displacement);
 /// Resolves the contacts with the walls; returns the new displacement.
 Vec3<float> resolve_wall_contacts(const Model& model, const StepConstants& step, Work& work, std::size_t i,
                                   float multiplier, const Vec3<float>& displacement);
-/// undo_overlap() of particle `i`.
-Vec3<float> undo_overlap_near_walls(const Model& model, const Ground& ground, const State& state, std::size_t i,
-                                    const Vec3<float>& p, float max_shift);
+/// undo_overlap() of particle `i`, from the shift `above_ground` that the ground alone asks for; its distance from the
+/// walls is in `work`.
+Vec3<float> undo_overlap_near_walls(const Model& model, const Ground& ground, const State& state, Work& work,
+                                    std::size_t i, const Vec3<float>& p, float max_shift,
+                                    const Vec3<float>& above_ground);
+/// Whether walls are certainly farther from the particle's end of the step than its sweep goes from there.
+bool sweeps_clear_of_walls(const Model& model, const State& state, const Work& work, std::size_t i);
 /// The particle's position at the end of the step, found by a sweep; lifting it back above ground must not speed it up.
 void enforce_particle(const Model& model, const Ground& ground, const State& state, Work& work, std::size_t i);
 

@@ -44,14 +44,14 @@ TALUS_DEVICE GroundFace<Real> sample_ground(const AnyModel& model, const AnyTerr
     return {distance, below.normal, share.density, share.slope};
 }
 
-/// Where faces meet, their shares overlap. For a kernel close to a Gaussian and faces at right angles the shared part
-/// is the product of the shares. `grain_rank` decides which nets are walls (see net.hpp).
+/// The ground and walls beside it. Where faces meet, their shares overlap. For a kernel close to a Gaussian and faces
+/// at right angles the shared part is the product of the shares. `grain_rank` decides which nets are walls (see
+/// net.hpp).
 template <class Real, class AnyModel, class AnyGround>
-TALUS_DEVICE Boundary<Real> sample_boundary(const AnyModel& model, const AnyGround& ground, const Vec3<Real>& p,
-                                            float grain_rank = terrain::largest_grain) {
+TALUS_DEVICE Boundary<Real> boundary_with(const GroundFace<Real>& ground_share, const AnyModel& model,
+                                          const AnyGround& ground, const Vec3<Real>& p, float grain_rank) {
     Boundary<Real> result;
     auto& [base, wall, second_wall] = result.faces;
-    const GroundFace<Real> ground_share = sample_ground(model, ground.terrain, p);
     base = {ground_share.distance, ground_share.normal, ground_share.slope, -1};
     result.density = ground_share.density;
     result.gradient = base.normal * base.slope;
@@ -68,6 +68,12 @@ TALUS_DEVICE Boundary<Real> sample_boundary(const AnyModel& model, const AnyGrou
     result.density = 1 - free * wall_free * second_free;
     result.gradient = base.normal * base.slope + wall.normal * wall.slope + second_wall.normal * second_wall.slope;
     return result;
+}
+
+template <class Real, class AnyModel, class AnyGround>
+TALUS_DEVICE Boundary<Real> sample_boundary(const AnyModel& model, const AnyGround& ground, const Vec3<Real>& p,
+                                            float grain_rank = terrain::largest_grain) {
+    return boundary_with(sample_ground(model, ground.terrain, p), model, ground, p, grain_rank);
 }
 
 /// The response of a boundary to a particle, relative to passive ground: 2 would be a mirror image, which presses like

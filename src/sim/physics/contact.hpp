@@ -113,19 +113,35 @@ TALUS_DEVICE Vec3<Real> resolve_contacts(const AnyModel& model, const Boundary<R
     return displacement;
 }
 
+/// Adds to `shift` what brings a particle that overlaps walls back to touching them, at most `max_shift` metres for
+/// each. Returns the nearest.
+template <class Real, class AnyModel, class AnyGround>
+TALUS_DEVICE terrain::SolidSample<Real> undo_wall_overlap(const AnyModel& model, const AnyGround& ground,
+                                                          const Vec3<Real>& p, Real max_shift, float grain_rank,
+                                                          Vec3<Real>& shift) {
+    const Real touching = Real(model.contact_distance());
+    const auto undo = [&](const terrain::SolidSample<Real>& wall) {
+        const Real overlap = touching - wall.distance;
+        if (wall.building < 0 || overlap <= 0) return;
+        shift += wall.normal * (overlap < max_shift ? overlap : max_shift);
+    };
+    const terrain::SolidSample<Real> nearest = ground.solids.nearest(p, grain_rank);
+    constexpr double beyond_rounding = 1e-3;  // m
+    if (nearest.building < 0 || nearest.distance > touching + Real(beyond_rounding)) return nearest;
+    undo(nearest);
+    undo(ground.solids.second_nearest(p, nearest, grain_rank));  // which is no nearer
+    return nearest;
+}
+
 /// The shift that brings a particle overlapping ground or a wall back to touching it, at most `max_shift` metres.
 template <class Real, class AnyModel, class AnyGround>
 TALUS_DEVICE Vec3<Real> undo_overlap(const AnyModel& model, const AnyGround& ground, const Vec3<Real>& p,
                                      Real max_shift, float grain_rank = terrain::largest_grain) {
-    const Real touching = Real(model.contact_distance());
-    const Boundary<Real> now = sample_boundary(model, ground, p, grain_rank);
+    const terrain::GroundSample<Real> below = ground.terrain.sample(p.x, p.y);
+    const Real overlap = Real(model.contact_distance()) - (p.z - below.height) * below.normal.z;
     Vec3<Real> shift{};
-    for (std::size_t f = 0; f < face_count; ++f) {
-        const BoundaryFace<Real>& face = now.faces[f];
-        const Real overlap = touching - face.distance;
-        if ((f > 0 && face.building < 0) || overlap <= 0) continue;
-        shift += face.normal * (overlap < max_shift ? overlap : max_shift);
-    }
+    if (overlap > 0) shift += below.normal * (overlap < max_shift ? overlap : max_shift);
+    if (!ground.solids.empty()) undo_wall_overlap(model, ground, p, max_shift, grain_rank, shift);
     return shift;
 }
 
@@ -134,6 +150,12 @@ template <class Real, class AnyGround>
 TALUS_DEVICE bool is_free(const AnyGround& ground, const Vec3<Real>& p, float grain_rank = terrain::largest_grain) {
     if (p.z < ground.terrain.sample(p.x, p.y).height) return false;
     return ground.solids.empty() || !ground.solids.inside(p, grain_rank);
+}
+
+/// Into how many parts a sweep divides a displacement: each is at most `longest`.
+template <class Real>
+TALUS_DEVICE int sweep_parts(Real distance, Real longest) {
+    return distance > longest ? static_cast<int>(distance / longest) + 1 : 1;
 }
 
 /// The position at which a particle may end its step: `start + displacement` if the path is free, otherwise a place in
@@ -145,7 +167,7 @@ TALUS_DEVICE Vec3<Real> free_end(const AnyModel& model, const AnyGround& ground,
     const Vec3<Real> end = start + displacement;
     const Real max_part = Real(model.particle_spacing / 4);
     const Real distance = length(displacement);
-    const int parts = distance > max_part ? static_cast<int>(distance / max_part) + 1 : 1;
+    const int parts = sweep_parts(distance, max_part);
     Real clear = 0;  // share of the path known to be free
     Real blocked = -1;
     for (int part = 1; part <= parts; ++part) {
