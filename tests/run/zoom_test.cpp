@@ -171,6 +171,20 @@ TEST_F(ZoomedRun, brings_what_crosses_the_boundary_to_the_structure) {
     EXPECT_LT(result->particles, 1.001 * scene.releases[0].volume);
 }
 
+TEST_F(ZoomedRun, measures_at_its_gauges_and_cross_sections) {
+    const std::string measured = fmt::format(
+        "[[gauge]]\nname = \"before the dam\"\nx_m = {}\ny_m = {}\n"
+        "[[cross_section]]\nname = \"way to the dam\"\nline_m = [[{}, {}], [{}, {}]]\n",
+        west + 148, south + 100, west + 140, south + 10, west + 140, south + 190);
+    const scene::Scene scene = loaded(dam(150) + measured, {"solver.end_time_s=30", "zoom.structure=dam",
+                                                            "zoom.margin_m=20", "zoom.particle_spacing_m=1"});
+    const RunResult result = test::value_of(run_scene(scene, {}));
+    ASSERT_EQ(result.observation.gauges.size(), 1U);
+    EXPECT_GT(result.observation.gauges[0].peak_depth, 0.1);
+    ASSERT_EQ(result.observation.cross_sections.size(), 1U);
+    EXPECT_GT(std::abs(result.observation.cross_sections[0].passed), 0.1 * result.zoom->volumes.in);
+}
+
 TEST_F(ZoomedRun, is_fed_by_debris_with_the_friction_inside_of_the_particles) {
     const auto first_time = [&](const char* coefficient) {
         const scene::Scene scene =
