@@ -51,7 +51,7 @@ class RunClock {
   public:
     explicit RunClock(const params::SolverSpec& solver) : solver_(solver), end_(solver.end_time) {}
 
-    /// After a step. Calls `look` now and then, for at most a twentieth of the wall time; for more, a few times, where
+    /// After a step. Calls `look` now and then, for at most a fiftieth of the wall time; for more, a few times, where
     /// a run is short.
     void tick(double wall_time, double time, const std::function<Outlook()>& look);
     [[nodiscard]] double expected_end() const { return end_; }  ///< s, simulated
