@@ -90,7 +90,7 @@ enum class OnFault {
 };
 
 enum class Observed {
-    no,   ///< the state alone: walls and maps cost up to half of a step, and side walls are touched everywhere
+    no,   ///< the state alone; what presses on the side walls of a slice takes a third of a run to record
     yes,  ///< maps and impacts too, in observer()
 };
 
@@ -112,6 +112,7 @@ class Trial {
     [[nodiscard]] const sim::Model& model() const { return run_.model(); }
     [[nodiscard]] const sim::Ground& ground() const { return run_.ground(); }
     [[nodiscard]] const sim::State& state() const { return run_.state(); }
+    /// With Observed::yes; else it has nothing but the start.
     [[nodiscard]] const observe::Observer& observer() const { return run_.observer(); }
     /// The first fault, or the user's request to stop; empty: none.
     [[nodiscard]] const std::string& problem() const { return problem_; }
